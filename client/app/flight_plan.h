@@ -1,0 +1,39 @@
+#pragma once
+// The frames of a scripted run, before any is drawn: a pose for each, and which of them are points of the flight. Thread-safe.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/flight/flight_file.h"
+#include "common/result.h"
+#include "common/view/camera.h"
+
+namespace terrane {
+
+struct PlannedFrame {
+  double seconds = 0;
+  ViewPose pose;
+  int point = -1;  ///< index of the flight's point that this frame shows; -1 between points
+};
+
+struct FlightPlan {
+  bool aboveGround = false;
+  std::vector<PlannedFrame> frames;
+  std::size_t points = 0;
+};
+
+/// "descent", "orbit" or a file. place: where the built-in flights go.
+Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place);
+
+/// Frames every stepSeconds from the first point on, and one at exactly each point's time. maxFrames 0: all of them.
+/// Errors: TooLarge naming "--step" beyond ten million frames.
+Result<FlightPlan> planFlight(const Flight& flight, double stepSeconds, std::size_t maxFrames);
+
+/// count frames of one pose.
+FlightPlan planStill(const ViewPose& pose, bool aboveGround, std::size_t count, double stepSeconds);
+
+/// "out-%d.png" and 3: "out-3.png".
+std::string numberedFile(std::string pattern, std::size_t number);
+
+}  // namespace terrane

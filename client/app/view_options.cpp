@@ -1,0 +1,265 @@
+#include "client/app/view_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+namespace terrane {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+constexpr const char* kDescription =
+    "Flies over the terrain that a terrane-server computes, from far orbit to the ground.";
+
+constexpr const char* kFooter = R"(
+Modes
+  Without --headless, --settle, --capture, --frames or --explain a window opens and follows your hands.
+  With one of them the run is scripted: it goes to its end by itself and leaves with 0, or prints one line and leaves with 1.
+  --headless needs no display. Without --flight and --frames it implies --settle.
+
+Controls
+  drag          orbit: turn the body under the cursor     free flight: look around
+  right drag    look around                               wheel: nearer, further
+  W A S D Q E   fly; Shift faster, Ctrl slower; the speed follows the height above ground
+  Tab mode      Home reset     P placement     F1 help and figures     F2 wireframe     F3 level colours
+  F4 freeze selection          + - allowed error            F12 screenshot              Esc quit
+
+Statistics (--stats)
+  frameMs is CPU and GPU together (the GPU is waited for). uncoveredPixels and skirtPixels are counted in an own pass for every
+  frame from the first full view on; that pass is not part of frameMs, and without --stats it is not drawn.
+
+Examples
+  terrane-view --server http://127.0.0.1:8080
+  terrane-view --server http://127.0.0.1:8080 --camera -20.1,9.6,2,40,-10 --above-ground --headless --capture ground.png
+  terrane-view --server http://127.0.0.1:8080 --headless --flight descent --settle --capture descent-%d.png --stats descent.json)";
+
+Error flagError(std::string_view flag, std::string message) {
+  return makeError(ErrorKind::InvalidArgument, std::string(flag), std::move(message));
+}
+
+std::optional<double> parseNumber(std::string_view text) {
+  double value = 0;
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+// What CLI11 fills in before it is checked.
+struct RawOptions {
+  ViewOptions options;
+  std::string camera, size = "1280x720", placement = "auto", cache, cacheBudget = "512MiB", memoryBudget = "128MiB";
+  double fieldOfViewDegrees = 50;
+};
+
+void declareOptions(CLI::App& app, RawOptions& raw) {
+  ViewOptions& o = raw.options;
+  app.add_option("--server", o.serverUrl, "Where the server is, e.g. http://127.0.0.1:8080")->type_name("URL");
+  app.add_option("--body", o.body, "Which of the scene's bodies (default: the first)")->type_name("NAME");
+  app.add_option("--camera", raw.camera,
+                 "Degrees and metres above the reference sphere; heading from north clockwise (default 0), pitch 0 level, -90 "
+                 "down (default). Default: the whole body in view")
+      ->type_name("LON,LAT,ALT[,HEADING,PITCH]");
+  app.add_flag("--above-ground", o.aboveGround, "Altitudes of --camera and --flight count from the finest ground under the camera");
+  app.add_option("--flight", o.flight, "Fly this: descent (10,000 km to 0.2 m), orbit, or a file as --record writes it; built-in "
+                 "flights go to --camera's place")
+      ->type_name("descent|orbit|FILE");
+  app.add_option("--record", o.recordFile, "Write what was flown")->type_name("FILE");
+  app.add_option("--size", raw.size, "Picture size in pixels")->type_name("WxH")->capture_default_str();
+  app.add_option("--fov", raw.fieldOfViewDegrees, "Vertical field of view, degrees, 1..150")->type_name("DEG")->capture_default_str();
+  app.add_option("--error", o.errorPixels, "Allowed screen-space error, pixels, 0.1..100")->type_name("PIXELS")->capture_default_str();
+  app.add_option("--frame-budget", o.frameBudgetMs,
+                 "Hold this frame time by raising the error, up to 16 times --error; 0 is off (default)")
+      ->type_name("MS");
+  app.add_option("--placement", raw.placement,
+                 "How vertices are placed: auto (what the self-test of the GPU allows), integer, double-float, cpu, float32")
+      ->type_name("NAME")->capture_default_str();
+  app.add_flag("--headless", o.headless, "No window, no display needed");
+  app.add_flag("--settle", o.settle, "Wait until every view is complete before it is drawn; fails when tiles do not come");
+  app.add_option("--capture", o.captureFile, "Write the last picture; with %d in the name one for each point of the flight")
+      ->type_name("OUT.png");
+  app.add_option("--stats", o.statsFile, "Write figures of the run")->type_name("OUT.json");
+  app.add_flag("--hud", o.hud, "Show the overlay in scripted runs too");
+  app.add_option("--frames", o.frames,
+                 "Scripted: frames to draw (default: a flight's own number; otherwise 1, with --stats 8)")
+      ->type_name("N");
+  app.add_option("--step", o.stepSeconds, "Scripted flights: seconds between frames; the flight's own points are always among them")
+      ->type_name("S")->capture_default_str();
+  app.add_option("--time-limit", o.timeLimitSeconds, "Scripted: give up when one view is not complete after this time")
+      ->type_name("S")->capture_default_str();
+  app.add_option("--cache", raw.cache,
+                 "Disk cache of tiles, or none (default: $XDG_CACHE_HOME/terrane/tiles.sqlite in a window; none in scripted runs, "
+                 "so that they can be repeated)")
+      ->type_name("FILE|none");
+  app.add_option("--cache-budget", raw.cacheBudget, "Most that the disk cache takes")->type_name("SIZE")->capture_default_str();
+  app.add_option("--memory-budget", raw.memoryBudget, "Most that tiles in memory take, what is in view excepted")
+      ->type_name("SIZE")->capture_default_str();
+  app.add_flag("--explain", o.explain, "Print each effect, on or off, why, and what it costs here; then leave");
+}
+
+Result<std::size_t> checkRange(std::string_view flag, double value, double low, double high) {
+  if (value >= low && value <= high) return std::size_t{0};
+  return flagError(flag, fmt::format("{} is out of range: {} to {}", value, low, high));
+}
+
+Result<std::size_t> checkCapture(const ViewOptions& options) {
+  const std::size_t percent = options.captureFile.find('%');
+  if (percent == std::string::npos) return std::size_t{0};
+  if (options.captureFile.compare(percent, 2, "%d") != 0 || options.captureFile.find('%', percent + 1) != std::string::npos)
+    return flagError("--capture", fmt::format("\"{}\": %d may stand in the name once, and no other %", options.captureFile));
+  if (options.flight.empty()) return flagError("--capture", "%d counts the points of a flight: --flight is missing");
+  return std::size_t{0};
+}
+
+std::string defaultCacheFile(EnvironmentLookup environment) {
+  std::string base = environment("XDG_CACHE_HOME");
+  if (base.empty()) {
+    const std::string home = environment("HOME");
+    if (home.empty()) return {};
+    base = home + "/.cache";
+  }
+  return base + "/terrane/tiles.sqlite";
+}
+
+Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
+  ViewOptions& o = raw.options;
+  if (o.serverUrl.empty()) return flagError("--server", "is missing: where is the server? e.g. --server http://127.0.0.1:8080");
+  if (!raw.camera.empty()) {
+    const auto pose = parseCamera(raw.camera);
+    if (!pose) return pose.error();
+    o.camera = *pose;
+  }
+  const auto size = parseSize(raw.size);
+  if (!size) return size.error();
+  std::tie(o.widthPixels, o.heightPixels) = *size;
+  if (raw.placement != "auto") {
+    const auto placement = parsePlacement(raw.placement);
+    if (!placement) return placement.error();
+    o.placement = *placement;
+  }
+  for (const auto& range : {checkRange("--fov", raw.fieldOfViewDegrees, 1, 150), checkRange("--error", o.errorPixels, 0.1, 100),
+                            checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e9),
+                            checkRange("--step", o.stepSeconds, 1e-4, 1e6),
+                            checkRange("--time-limit", o.timeLimitSeconds, 0.1, 1e6), checkCapture(o)})
+    if (!range) return range.error();
+  o.verticalFieldOfView = raw.fieldOfViewDegrees * kRadiansPerDegree;
+  const auto cacheBudget = parseByteSize(raw.cacheBudget, "--cache-budget");
+  if (!cacheBudget) return cacheBudget.error();
+  const auto memoryBudget = parseByteSize(raw.memoryBudget, "--memory-budget");
+  if (!memoryBudget) return memoryBudget.error();
+  o.cacheBudgetBytes = *cacheBudget;
+  o.memoryBudgetBytes = *memoryBudget;
+  if (o.headless && o.flight.empty() && o.frames == 0) o.settle = true;
+  if (raw.cache.empty())
+    o.cacheFile = o.scripted() ? std::string{} : defaultCacheFile(environment);
+  else if (raw.cache != "none")
+    o.cacheFile = raw.cache;
+  return std::move(raw.options);
+}
+
+// CLI11 words its messages "--error: Could not convert..." or names the flag at the end; here the flag is a field of its own.
+Error errorOf(const CLI::ParseError& error, const CLI::App& app) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    const auto extra = app.remaining();
+    return flagError(extra.empty() ? "" : extra.front(), "no such flag (terrane-view --help lists them)");
+  }
+  std::string message = error.what();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  if (message.rfind("--", 0) == 0) {
+    const std::size_t end = message.find_first_of(": ");
+    const std::size_t text = message.find_first_not_of(": ", end);
+    return flagError(message.substr(0, end), text == std::string::npos ? "wrong value" : message.substr(text));
+  }
+  const std::size_t flag = message.find("--");
+  if (flag == std::string::npos) return flagError("", message);
+  return flagError(message.substr(flag, message.find_first_of(": ", flag) - flag), message);
+}
+
+}  // namespace
+
+Result<std::pair<int, int>> parseSize(std::string_view text) {
+  const std::size_t x = text.find('x');
+  const auto side = [](std::string_view part) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return error == std::errc() && end == part.data() + part.size() && value >= 16 && value <= 16384 ? value : 0;
+  };
+  const int width = x == std::string_view::npos ? 0 : side(text.substr(0, x));
+  const int height = x == std::string_view::npos ? 0 : side(text.substr(x + 1));
+  if (width == 0 || height == 0)
+    return flagError("--size", fmt::format("\"{}\" is no size: write it as 1280x720, each side 16 to 16384", text));
+  return std::pair{width, height};
+}
+
+Result<ViewPose> parseCamera(std::string_view text) {
+  const auto wrong = [&](std::string_view why) {
+    return flagError("--camera", fmt::format("\"{}\": {} (LON,LAT,ALT[,HEADING,PITCH], degrees and metres)", text, why));
+  };
+  std::array<double, 5> values{0, 0, 0, 0, -90};
+  std::size_t count = 0;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = rest.find(',');
+    const auto number = parseNumber(rest.substr(0, comma));
+    if (!number) return wrong(fmt::format("\"{}\" is no number", rest.substr(0, comma)));
+    if (count == values.size()) return wrong("more than five numbers");
+    values[count++] = *number;
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (count < 3) return wrong("at least three numbers are needed");
+  if (std::abs(values[0]) > 360) return wrong("the longitude is out of range: -360 to 360");
+  if (std::abs(values[1]) > 90) return wrong("the latitude is out of range: -90 to 90");
+  if (std::abs(values[2]) > 1e12) return wrong("the altitude is out of range: at most 1e12 m");
+  if (std::abs(values[3]) > 360) return wrong("the heading is out of range: -360 to 360");
+  if (std::abs(values[4]) > 90) return wrong("the pitch is out of range: -90 to 90");
+  return ViewPose{values[0] * kRadiansPerDegree, values[1] * kRadiansPerDegree, values[2], values[3] * kRadiansPerDegree,
+                  values[4] * kRadiansPerDegree};
+}
+
+Result<std::size_t> parseByteSize(std::string_view text, std::string_view flag) {
+  const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
+  const auto number = parseNumber(text.substr(0, unitAt));
+  const std::string_view unit = text.substr(unitAt);
+  double scale = 0;
+  for (const auto& [name, bytes] : {std::pair{"", 1.0}, std::pair{"KiB", 1024.0}, std::pair{"MiB", 1048576.0}, std::pair{"GiB", 1073741824.0}})
+    if (unit == name) scale = bytes;
+  if (!number || scale == 0) return flagError(flag, fmt::format("\"{}\" is no size: write it as 256MiB, 2GiB or in bytes", text));
+  const double bytes = *number * scale;
+  if (bytes < 1048576.0 || bytes > 1e15) return flagError(flag, fmt::format("\"{}\" is out of range: 1MiB to 900000GiB", text));
+  return static_cast<std::size_t>(bytes);
+}
+
+Result<std::variant<ViewOptions, OptionsText>> parseViewOptions(const std::vector<std::string>& arguments,
+                                                                EnvironmentLookup environment) {
+  using Parsed = std::variant<ViewOptions, OptionsText>;
+  CLI::App app{kDescription, "terrane-view"};
+  RawOptions raw;
+  declareOptions(app, raw);
+  app.footer(kFooter);
+  app.set_version_flag("--version", "terrane-view " TERRANE_VERSION);
+  app.get_formatter()->column_width(40);
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them last first
+  } catch (const CLI::CallForHelp&) {
+    return Parsed{OptionsText{app.help()}};
+  } catch (const CLI::CallForVersion& version) {
+    return Parsed{OptionsText{std::string(version.what()) + "\n"}};
+  } catch (const CLI::ParseError& error) {
+    return errorOf(error, app);
+  }
+  auto options = checked(std::move(raw), environment);
+  if (!options) return options.error();
+  return Parsed{std::move(*options)};
+}
+
+}  // namespace terrane

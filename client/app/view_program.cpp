@@ -1,0 +1,57 @@
+#include "client/app/view_program.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include "client/app/interactive_run.h"
+#include "client/app/scripted_run.h"
+#include "client/app/view_options.h"
+#include "client/gl/window.h"
+
+namespace terrane {
+namespace {
+
+constexpr int kFailed = 1, kWrongUsage = 2;
+
+std::string environmentVariable(const char* name) {
+  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): read before any thread starts
+  return value == nullptr ? std::string{} : value;
+}
+
+int fail(const Error& error, int status) {
+  fmt::print(stderr, "terrane-view: {}\n", error.text());
+  return status;
+}
+
+int view(const ViewOptions& options, std::chrono::steady_clock::time_point start) {
+  WindowOptions windowOptions;
+  windowOptions.widthPixels = options.widthPixels;
+  windowOptions.heightPixels = options.heightPixels;
+  windowOptions.headless = options.headless || options.explain;
+  auto window = Window::open(windowOptions);
+  if (!window) return fail(window.error(), kFailed);
+  return options.scripted() ? runScripted(options, **window, start) : runInteractive(options, **window, start);
+}
+
+}  // namespace
+
+int runViewProgram(int argc, char** argv) {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    const auto parsed = parseViewOptions({argv + 1, argv + argc}, &environmentVariable);
+    if (!parsed) return fail(parsed.error(), kWrongUsage);
+    if (const auto* text = std::get_if<OptionsText>(&*parsed)) {
+      fmt::print("{}", text->text);
+      return 0;
+    }
+    return view(std::get<ViewOptions>(*parsed), start);
+  } catch (const std::exception& error) {  // the last edge: out of memory, or a bug
+    return fail(makeError(ErrorKind::Internal, "", error.what()), kFailed);
+  }
+}
+
+}  // namespace terrane

@@ -1,0 +1,266 @@
+#include "client/app/view_session.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "client/controls/camera_controls.h"
+#include "common/tiling/cube_sphere.h"
+#include "common/view/level_of_detail.h"
+
+namespace terrane {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Small enough that one batch does not overrun a frame's time by much.
+constexpr std::size_t kUploadBatchBytes = 512u << 10;
+constexpr int kLevelsAheadOfGround = 2;
+
+std::uint32_t gridIndex(double coordinate, int level) {
+  const double cells = static_cast<double>(std::uint64_t{1} << level);
+  return static_cast<std::uint32_t>(std::clamp(std::floor((coordinate + 1) / 2 * cells), 0.0, cells - 1));
+}
+
+FacePath tileUnder(const glm::dvec3& direction, int level) {
+  const FaceCoordinates at = cubeFaceCoordinates(direction);
+  return FacePath::cubeTile(at.face, level, gridIndex(at.s, level), gridIndex(at.t, level));
+}
+
+}  // namespace
+
+struct ViewSession::State {
+  ViewOptions options;
+  std::unique_ptr<TileStream> stream;
+  std::unique_ptr<TileRenderer> renderer;
+  std::size_t bodyIndex = 0;
+  Camera camera;
+  ViewPose pose;
+  TileSelection selection;
+  std::vector<FacePath> drawn;
+  std::size_t missing = 0, wantedCount = 0;
+  bool firstUpdate = true;
+  std::unordered_map<FacePath, TilePtr> kept;  ///< only to explain: otherwise a mesh is dropped once it is on the GPU
+
+  bool takeArrivals(const UploadBudget& budget);
+  ViewPose resolved(const View& view) const;
+  std::vector<WantedTile> groundChain(double errorPixels) const;
+  bool requestTiles(double errorPixels, bool groundFirst);
+};
+
+ViewSession::ViewSession(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ViewSession::~ViewSession() = default;
+
+Result<std::unique_ptr<ViewSession>> ViewSession::open(const ViewOptions& options, std::function<void()> wake) {
+  StreamOptions streamOptions;
+  streamOptions.serverUrl = options.serverUrl;
+  streamOptions.residentBudgetBytes = options.memoryBudgetBytes;
+  streamOptions.cacheFile = options.cacheFile;
+  streamOptions.cacheBudgetBytes = options.cacheBudgetBytes;
+  auto stream = TileStream::open(std::move(streamOptions), std::move(wake));
+  if (!stream) return stream.error();
+  auto state = std::make_unique<State>();
+  state->options = options;
+  state->stream = std::move(*stream);
+  auto session = std::unique_ptr<ViewSession>(new ViewSession(std::move(state)));
+  session->errorPixels = options.errorPixels;
+  return session;
+}
+
+Result<bool> ViewSession::ready() {
+  State& s = *state_;
+  const SceneInfo* scene = s.stream->scene();
+  if (scene == nullptr) return false;
+  if (s.renderer) return true;
+  if (scene->bodies.empty()) return makeError(ErrorKind::Unsupported, "--server", "its scene has no body");
+  const auto found = std::find_if(scene->bodies.begin(), scene->bodies.end(),
+                                  [&](const BodyInfo& body) { return body.name == s.options.body; });
+  if (!s.options.body.empty() && found == scene->bodies.end()) {
+    std::string names;
+    for (const BodyInfo& body : scene->bodies) names += (names.empty() ? "" : ", ") + body.name;
+    return makeError(ErrorKind::InvalidArgument, "--body",
+                     fmt::format("the scene \"{}\" has no \"{}\": it has {}", scene->name, s.options.body, names));
+  }
+  s.bodyIndex = s.options.body.empty() ? 0 : static_cast<std::size_t>(found - scene->bodies.begin());
+  auto renderer = TileRenderer::create(scene->effects);
+  if (!renderer) return renderer.error();
+  s.renderer = std::move(*renderer);
+  s.stream->selectBody(s.bodyIndex);
+  drawSettings.placement = s.options.placement.value_or(s.renderer->selfTest().chosen);
+  return true;
+}
+
+const SceneInfo& ViewSession::scene() const { return *state_->stream->scene(); }
+const BodyInfo& ViewSession::body() const { return scene().bodies[std::min(state_->bodyIndex, scene().bodies.size() - 1)]; }
+
+// Uploads what is decoded until the frame's share of bytes or time is used up.
+bool ViewSession::State::takeArrivals(const UploadBudget& budget) {
+  const auto start = Clock::now();
+  std::size_t bytes = 0;
+  bool any = false;
+  while (bytes < budget.bytes) {
+    const std::vector<TilePtr> arrived = stream->takeDecoded(std::min(kUploadBatchBytes, budget.bytes - bytes));
+    if (arrived.empty()) break;
+    for (const TilePtr& tile : arrived) {
+      const std::size_t gpuBytes = renderer->upload(tile);
+      stream->markResident(tile, gpuBytes);
+      if (options.explain) kept.insert_or_assign(tile->metadata.path, tile);
+      bytes += std::max<std::size_t>(gpuBytes, 1);
+    }
+    any = true;
+    if (std::chrono::duration<double, std::milli>(Clock::now() - start).count() > budget.milliseconds) break;
+  }
+  return any;
+}
+
+ViewPose ViewSession::State::resolved(const View& view) const {
+  ViewPose result = view.pose;
+  if (!view.aboveGround) return result;
+  if (const auto ground = stream->groundBelow(directionOf(result.longitude, result.latitude)))
+    result.altitudeMeters += ground->heightMeters;
+  return result;
+}
+
+// The tiles under the camera, down to the level that its height calls for, whether it looks there or not: the ground's height
+// comes from them.
+std::vector<WantedTile> ViewSession::State::groundChain(double errorPixels) const {
+  const SelectionBody& body = stream->scene()->bodies[bodyIndex].selection;
+  const glm::dvec3 direction = directionOf(pose.longitude, pose.latitude);
+  const auto ground = stream->groundBelow(direction);
+  const double height = std::max(pose.altitudeMeters - (ground ? ground->heightMeters : 0.0), kLowestHeightAboveGroundMeters);
+  const double allowedMeters = errorPixels * height / pixelsPerRadian(camera);
+  std::vector<WantedTile> chain;
+  for (int level = 0; level <= body.maxLevel; ++level) {
+    const double error = body.geometricErrorMeters[static_cast<std::size_t>(level)];
+    const bool last = error <= allowedMeters || level == body.maxLevel;
+    chain.push_back({tileUnder(direction, level), error * pixelsPerRadian(camera) / height, last});
+    if (last) break;
+  }
+  return chain;
+}
+
+// Asks for the selection and the ground; true when the ground's finest wanted tile is there. groundFirst: the camera's own height
+// depends on the ground, so until that is known no fine tile is asked for where the camera only seems to be.
+bool ViewSession::State::requestTiles(double errorPixels, bool groundFirst) {
+  std::vector<WantedTile> wanted = selection.wanted;
+  const std::vector<WantedTile> chain = groundChain(errorPixels);
+  const bool groundKnown = stream->resident(chain.back().path) != nullptr;
+  if (groundFirst && !groundKnown) {
+    const auto ground = stream->groundBelow(directionOf(pose.longitude, pose.latitude));
+    const int finest = (ground ? ground->level : 0) + kLevelsAheadOfGround;
+    std::erase_if(wanted, [&](const WantedTile& tile) { return tile.path.level() > finest; });
+  }
+  std::unordered_set<FacePath> known;
+  known.reserve(wanted.size() * 2);
+  for (const WantedTile& tile : wanted) known.insert(tile.path);
+  for (const WantedTile& tile : chain)
+    if (!known.contains(tile.path)) wanted.push_back(tile);
+  std::stable_sort(wanted.begin(), wanted.end(),
+                   [](const WantedTile& a, const WantedTile& b) { return a.path.level() < b.path.level(); });
+  wantedCount = wanted.size();
+  missing = static_cast<std::size_t>(std::count_if(
+      wanted.begin(), wanted.end(), [&](const WantedTile& tile) { return stream->resident(tile.path) == nullptr; }));
+  stream->want(wanted);
+  return groundKnown;
+}
+
+UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
+  State& s = *state_;
+  const bool arrived = s.takeArrivals(budget);
+  const ViewPose pose = s.resolved(view);
+  const double altitudeBefore = s.pose.altitudeMeters;
+  const Camera camera = cameraFromPose(pose, body().selection.radiusMeters, s.options.verticalFieldOfView, view.widthPixels,
+                                       view.heightPixels);
+  const bool moved = s.firstUpdate || camera.positionBody != s.camera.positionBody || camera.right != s.camera.right ||
+                     camera.backward != s.camera.backward || camera.widthPixels != s.camera.widthPixels ||
+                     camera.heightPixels != s.camera.heightPixels;
+  s.camera = camera;
+  s.pose = pose;
+  s.firstUpdate = false;
+  UpdateReport report;
+  if (frozen) {
+    report.changed = moved;
+  } else {
+    SelectionSettings settings;
+    settings.errorPixels = errorPixels;
+    s.selection = selectTiles(camera, body().selection, [&s](const FacePath& path) { return s.stream->resident(path); }, settings);
+    report.changed = moved || s.selection.draw != s.drawn;
+    s.drawn = s.selection.draw;
+    const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround);
+    report.complete = s.selection.complete && (groundKnown || !view.aboveGround);
+    const bool still = !view.aboveGround || pose.altitudeMeters == altitudeBefore;
+    const bool idle = s.stream->idle();
+    report.settled = s.selection.complete && groundKnown && still && !arrived && s.missing == 0 && idle;
+    report.stuck = !arrived && s.missing > 0 && idle && s.stream->status().failed > 0;
+  }
+  for (const FacePath& path : s.stream->evict(s.drawn)) s.renderer->remove(path);
+  return report;
+}
+
+DrawStats ViewSession::draw() { return state_->renderer->draw(state_->camera, state_->drawn, drawSettings); }
+
+CoverageCount ViewSession::coverage() {
+  return state_->renderer->countCoverage(state_->camera, state_->drawn, drawSettings.placement,
+                                         body().selection.occluderRadiusMeters);
+}
+
+void ViewSession::finish() { glFinish(); }
+
+const ViewPose& ViewSession::pose() const noexcept { return state_->pose; }
+const Camera& ViewSession::camera() const noexcept { return state_->camera; }
+
+std::optional<double> ViewSession::groundHeight(const glm::dvec3& directionBody) const {
+  const auto ground = state_->stream->groundBelow(directionBody);
+  return ground ? std::optional<double>(ground->heightMeters) : std::nullopt;
+}
+
+std::optional<double> ViewSession::heightAboveGround() const {
+  const auto ground = groundHeight(directionOf(state_->pose.longitude, state_->pose.latitude));
+  return ground ? std::optional<double>(state_->pose.altitudeMeters - *ground) : std::nullopt;
+}
+
+double ViewSession::progress() const noexcept {
+  return state_->wantedCount == 0 ? 0 : 1 - static_cast<double>(state_->missing) / static_cast<double>(state_->wantedCount);
+}
+
+std::size_t ViewSession::missing() const noexcept { return state_->missing; }
+const std::vector<FacePath>& ViewSession::drawn() const noexcept { return state_->drawn; }
+StreamStatus ViewSession::streamStatus() const { return state_->stream->status(); }
+const SelfTestReport& ViewSession::selfTest() const { return state_->renderer->selfTest(); }
+std::size_t ViewSession::gpuBytes() const { return state_->renderer ? state_->renderer->gpuBytes() : 0; }
+
+TilePtr ViewSession::keptTile(const FacePath& path) const {
+  const auto found = state_->kept.find(path);
+  return found == state_->kept.end() ? nullptr : found->second;
+}
+
+ViewPose wholeBodyPose(const SceneInfo& scene, const BodyInfo& body, double verticalFieldOfView, int widthPixels,
+                       int heightPixels) {
+  // The disc takes 85 % of the picture's shorter side: sin(half its angle) = R / (R + altitude).
+  const double shorter = std::min(1.0, static_cast<double>(widthPixels) / heightPixels);
+  const double halfAngle = 0.85 * std::atan(std::tan(verticalFieldOfView / 2) * shorter);
+  ViewPose pose;
+  pose.altitudeMeters = body.selection.radiusMeters * (1 / std::sin(halfAngle) - 1);
+  pose.pitch = -std::numbers::pi / 2;
+  for (const EffectCall& effect : scene.effects) {
+    const auto longitude = effect.parameters.find("longitude");
+    // 55 degrees from where the sun stands overhead: half a morning, relief in long shadows on one side.
+    if (effect.kind == EffectKind::Sun && longitude != effect.parameters.end())
+      pose.longitude = std::remainder(longitude->second - 55 * std::numbers::pi / 180, 2 * std::numbers::pi);
+  }
+  return pose;
+}
+
+std::string selfTestText(const SelfTestReport& report) {
+  const auto word = [](bool exact) { return exact ? "exact" : "WRONG"; };
+  return fmt::format("integers {}, TwoSum {}, TwoProd {}", word(report.integerExact), word(report.twoSumExact),
+                     word(report.twoProdExact));
+}
+
+}  // namespace terrane

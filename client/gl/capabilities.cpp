@@ -1,0 +1,51 @@
+#include "client/gl/capabilities.h"
+
+#include <epoxy/gl.h>
+
+namespace terrane::gl {
+namespace {
+
+std::string glText(GLenum name) {
+  const auto* text = reinterpret_cast<const char*>(glGetString(name));
+  return text != nullptr ? text : "";
+}
+
+const char* errorName(GLenum error) {
+  switch (error) {
+    case GL_INVALID_ENUM: return "INVALID_ENUM";
+    case GL_INVALID_VALUE: return "INVALID_VALUE";
+    case GL_INVALID_OPERATION: return "INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION: return "INVALID_FRAMEBUFFER_OPERATION";
+    case GL_OUT_OF_MEMORY: return "OUT_OF_MEMORY";
+    default: return "unknown error";
+  }
+}
+
+}  // namespace
+
+Capabilities detectCapabilities(bool forceBaseline) {
+  Capabilities found;
+  found.renderer = glText(GL_RENDERER);
+  found.versionText = glText(GL_VERSION);
+  if (forceBaseline) return found;
+  found.version = epoxy_gl_version();
+  found.shadingLanguage = found.version >= 45 ? 450 : found.version >= 40 ? 400 : 330;
+  found.clipControl = found.version >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
+  found.preciseByExtension = found.version < 40 && epoxy_has_gl_extension("GL_ARB_gpu_shader5");
+  found.precise = found.version >= 40 || found.preciseByExtension;
+  return found;
+}
+
+std::string takeErrors() {
+  std::string names;
+  // A lost context reports an error for ever: stop after as many as could be meant.
+  for (int i = 0; i < 16; ++i) {
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR) break;
+    if (!names.empty()) names += ", ";
+    names += errorName(error);
+  }
+  return names;
+}
+
+}  // namespace terrane::gl

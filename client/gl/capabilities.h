@@ -1,0 +1,23 @@
+#pragma once
+// What the current GL context offers of the few things that Terrane asks for beyond 3.3 core. GL thread only.
+
+#include <string>
+
+namespace terrane::gl {
+
+struct Capabilities {
+  int version = 33;          ///< 10 * major + minor
+  int shadingLanguage = 330; ///< the #version that programs are compiled with
+  bool clipControl = false;  ///< depth 0..1, for reversed depth without loss
+  bool precise = false;      ///< the shading language has the qualifier that forbids rewriting floating-point expressions
+  bool preciseByExtension = false;
+  std::string renderer, versionText;
+};
+
+/// forceBaseline: report bare 3.3 whatever the context has, so that the baseline path can be tested anywhere.
+Capabilities detectCapabilities(bool forceBaseline = false);
+
+/// Names of the GL errors raised since the last call ("INVALID_OPERATION"), empty when there are none.
+std::string takeErrors();
+
+}  // namespace terrane::gl

@@ -1,0 +1,119 @@
+#include "client/render/tile_program.h"
+
+#include <string>
+
+namespace terrane {
+namespace {
+
+/// Display value (linear) of one unit of reflected light: highland soil (reflectance 0.16) under a high sun shows as 0.75 in sRGB.
+constexpr float kExposure = 3.2f;
+
+const char* placementDefine(Placement placement) {
+  switch (placement) {
+    case Placement::Integer: return "PLACEMENT_INTEGER";
+    case Placement::DoubleFloat: return "PLACEMENT_DOUBLE_FLOAT";
+    case Placement::Cpu: return "PLACEMENT_CPU";
+    case Placement::Float32: return "PLACEMENT_FLOAT32";
+  }
+  return "PLACEMENT_CPU";
+}
+
+/// Rows x, y and w of projection * rotation. The z row is the constant near plane.
+glm::mat3 clipRows(const Camera& camera) {
+  const glm::dmat4 projection = reversedInfiniteProjection(camera);
+  const glm::dmat3 rotation = viewRotation(camera);
+  glm::mat3 rows(0.0f);
+  for (int column = 0; column < 3; ++column) {
+    rows[column] = glm::vec3(projection[0][0] * rotation[column][0], projection[1][1] * rotation[column][1],
+                             projection[2][3] * rotation[column][2]);
+  }
+  return rows;
+}
+
+}  // namespace
+
+Result<TileProgram> TileProgram::build(Placement placement, TilePurpose purpose, const EffectList& effects,
+                                       const gl::Capabilities& capabilities) {
+  gl::ProgramSpec spec;
+  spec.defines.emplace_back(placementDefine(placement));
+  switch (purpose) {
+    case TilePurpose::Shaded:
+      spec.vertexFile = "tile.vert.glsl";
+      spec.fragmentFile = "tile.frag.glsl";
+      for (const auto& effect : effects) spec.defines.emplace_back(effect->define());
+      break;
+    case TilePurpose::Coverage:
+      spec.vertexFile = "position.vert.glsl";
+      spec.fragmentFile = "coverage.frag.glsl";
+      break;
+    case TilePurpose::Feedback:
+      spec.vertexFile = "position.vert.glsl";
+      spec.feedbackVaryings = {"gl_Position"};
+      break;
+  }
+  auto program = gl::Program::build(spec, capabilities);
+  if (!program) return program.error();
+  return TileProgram(std::move(*program), placement, purpose);
+}
+
+TileProgram::TileProgram(gl::Program program, Placement placement, TilePurpose purpose)
+    : program_(std::move(program)), placement_(placement), purpose_(purpose) {
+  clipRows_ = program_.uniform("clipRows");
+  nearMeters_ = program_.uniform("nearMeters");
+  exposure_ = program_.uniform("exposure");
+  tint_ = program_.uniform("tint");
+  mark_ = program_.uniform("mark");
+  stepMeters_ = program_.uniform("stepMeters");
+  originMinusCamera_ = program_.uniform("originMinusCamera");
+  cameraRest_ = program_.uniform("cameraRest");
+  originHigh_ = program_.uniform("originHigh");
+  originLow_ = program_.uniform("originLow");
+  cameraHigh_ = program_.uniform("cameraHigh");
+  cameraLow_ = program_.uniform("cameraLow");
+}
+
+void TileProgram::begin(const Camera& camera, const EffectList& effects) {
+  program_.use();
+  cameraBody_ = camera.positionBody;
+  stepExponent_.reset();
+  setUniform(clipRows_, clipRows(camera));
+  setUniform(nearMeters_, static_cast<float>(camera.nearMeters));
+  const FloatPairVec split = splitToFloats(camera.positionBody);
+  setUniform(cameraHigh_, split.high);
+  setUniform(cameraLow_, split.low);
+  if (purpose_ == TilePurpose::Shaded) {
+    setUniform(exposure_, kExposure * kColorScale);
+    setTint(glm::vec3(1.0f));
+    for (const auto& effect : effects) effect->setUniforms(program_);
+  }
+}
+
+bool TileProgram::place(GpuTile& tile, std::vector<float>& scratch) {
+  if (placement_ == Placement::Cpu) {
+    tile.placeOnCpu(cameraBody_, scratch);
+    return true;
+  }
+  const int stepExponent = tile.metadata.stepExponent;
+  if (stepExponent_ != stepExponent) {
+    stepExponent_ = stepExponent;
+    camera_ = cameraOnLattice(cameraBody_, stepExponent);
+    setUniform(stepMeters_, static_cast<float>(stepMeters(stepExponent)));
+    setUniform(cameraRest_, camera_.rest);
+  }
+  if (placement_ == Placement::Integer) {
+    const auto difference = originMinusCamera(tile.metadata.origin, camera_.steps);
+    if (!difference) return false;
+    setUniform(originMinusCamera_, *difference);
+  } else {
+    const FloatPairVec origin = splitToFloats(latticePosition(tile.metadata.origin, stepExponent));
+    setUniform(originHigh_, origin.high);
+    setUniform(originLow_, origin.low);
+  }
+  tile.array.bind();
+  return true;
+}
+
+void TileProgram::setTint(const glm::vec3& displayColor) const { setUniform(tint_, displayColor); }
+void TileProgram::setMark(float value) const { setUniform(mark_, value); }
+
+}  // namespace terrane

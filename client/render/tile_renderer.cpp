@@ -1,0 +1,265 @@
+#include "client/render/tile_renderer.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "client/gl/render_target.h"
+#include "client/render/coverage.h"
+#include "client/render/gpu_self_test.h"
+#include "client/render/gpu_tiles.h"
+#include "client/render/tile_program.h"
+
+namespace terrane {
+namespace {
+
+/// Hues a golden angle apart, so that neighbouring levels differ.
+glm::vec3 levelTint(int level) {
+  const float hue = std::fmod(static_cast<float>(level) * 0.618034f, 1.0f) * 6.0f;
+  const auto channel = [hue](float offset) {
+    const float k = std::fmod(offset + hue, 6.0f);
+    return 1.0f - 0.65f * std::clamp(std::min(k, 4.0f - k), 0.0f, 1.0f);
+  };
+  return {channel(5.0f), channel(3.0f), channel(1.0f)};
+}
+
+/// The state of a pass over tiles, and GL's defaults again afterwards (the HUD relies on them).
+class TilePass {
+ public:
+  TilePass(const gl::Capabilities& capabilities, bool wireframe) : clipControl_(capabilities.clipControl) {
+    if (clipControl_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    glFrontFace(GL_CCW);
+    glPolygonMode(GL_FRONT_AND_BACK, wireframe ? GL_LINE : GL_FILL);
+    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+    glClearDepth(0.0);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  }
+  TilePass(const TilePass&) = delete;
+  TilePass& operator=(const TilePass&) = delete;
+  ~TilePass() {
+    if (clipControl_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glClearDepth(1.0);
+    gl::VertexArray::unbind();
+    glUseProgram(0);
+  }
+
+ private:
+  bool clipControl_;
+};
+
+std::size_t drawIndices(const SharedIndices& indices, std::size_t first, std::size_t count) {
+  if (count == 0) return 0;
+  const std::size_t width = indices.wide ? sizeof(std::uint32_t) : sizeof(std::uint16_t);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), indices.wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT,
+                 reinterpret_cast<const void*>(first * width));
+  return count / 3;
+}
+
+}  // namespace
+
+struct TileRenderer::State {
+  gl::Capabilities capabilities;
+  SelfTestReport selfTest;
+  EffectList effects;
+  GpuTiles tiles;
+  std::array<std::array<std::optional<TileProgram>, kTilePurposeCount>, kPlacementCount> programs;
+  std::optional<RenderTarget> windowTarget, coverageTarget;
+  std::vector<float> scratch;
+
+  /// Compiled when first asked for. Errors: Unsupported ("shader").
+  Result<TileProgram*> program(Placement placement, TilePurpose purpose) {
+    auto& slot = programs[static_cast<std::size_t>(placement)][static_cast<std::size_t>(purpose)];
+    if (!slot) {
+      auto built = TileProgram::build(placement, purpose, effects, capabilities);
+      if (!built) return built.error();
+      slot.emplace(std::move(*built));
+    }
+    return &*slot;
+  }
+
+  /// As program; a driver that compiled the self-test but not this is reported once and asked for the Cpu placement instead.
+  TileProgram* programOrFallback(Placement placement, TilePurpose purpose) {
+    for (const Placement candidate : {placement, Placement::Cpu}) {
+      auto found = program(candidate, purpose);
+      if (found) return *found;
+      if (!reported) fmt::print(stderr, "placement {}: {}\n", placementName(candidate), found.error().text());
+      reported = true;
+    }
+    return nullptr;
+  }
+  bool reported = false;
+
+  /// Uploaded tiles of the list, nearest first: what is in front is drawn first and hides the rest before it is shaded.
+  std::vector<GpuTile*> nearestFirst(const Camera& camera, std::span<const FacePath> paths) {
+    struct Entry {
+      double distance;
+      GpuTile* tile;
+    };
+    std::vector<Entry> entries;
+    entries.reserve(paths.size());
+    for (const FacePath& path : paths) {
+      if (GpuTile* tile = tiles.find(path)) {
+        const Sphere& sphere = tile->metadata.sphere;
+        entries.push_back({glm::length(sphere.center - camera.positionBody) - sphere.radiusMeters, tile});
+      }
+    }
+    std::ranges::stable_sort(entries, {}, &Entry::distance);
+    std::vector<GpuTile*> ordered;
+    ordered.reserve(entries.size());
+    for (const Entry& entry : entries) ordered.push_back(entry.tile);
+    return ordered;
+  }
+
+  /// Calls drawTile(program, tile) with everything set, tile by tile.
+  template <class DrawTile>
+  void forEachTile(const Camera& camera, std::span<GpuTile* const> list, Placement placement, TilePurpose purpose,
+                   const DrawTile& drawTile) {
+    TileProgram* program = programOrFallback(placement, purpose);
+    if (program == nullptr) return;
+    program->begin(camera, effects);
+    std::vector<GpuTile*> unreachable;
+    for (GpuTile* tile : list) {
+      if (program->place(*tile, scratch)) {
+        drawTile(*program, *tile);
+      } else {
+        unreachable.push_back(tile);
+      }
+    }
+    if (!unreachable.empty()) forEachTile(camera, unreachable, Placement::Cpu, purpose, drawTile);
+  }
+
+  DrawStats drawTiles(const Camera& camera, std::span<const FacePath> paths, const DrawSettings& settings, Placement placement) {
+    DrawStats stats;
+    const TilePass pass(capabilities, settings.wireframe);
+    forEachTile(camera, nearestFirst(camera, paths), placement, TilePurpose::Shaded,
+                [&](const TileProgram& program, const GpuTile& tile) {
+                  if (settings.levelColors) program.setTint(levelTint(tile.metadata.path.level()));
+                  const SharedIndices& indices = *tile.indices;
+                  stats.triangles += drawIndices(indices, 0, indices.surfaceIndices + indices.skirtIndices);
+                  ++stats.tiles;
+                  ++stats.drawCalls;
+                });
+    return stats;
+  }
+};
+
+Result<std::unique_ptr<TileRenderer>> TileRenderer::create(const std::vector<EffectCall>& effects, const RendererOptions& options) {
+  auto state = std::make_unique<State>();
+  state->capabilities = gl::detectCapabilities(options.forceBaseline);
+  auto report = runGpuSelfTest(state->capabilities);
+  if (!report) return report.error();
+  state->selfTest = *report;
+  state->effects = makeEffects(effects);
+  if (auto program = state->program(state->selfTest.chosen, TilePurpose::Shaded); !program) return program.error();
+  return std::unique_ptr<TileRenderer>(new TileRenderer(std::move(state)));
+}
+
+TileRenderer::TileRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+TileRenderer::~TileRenderer() = default;
+
+const SelfTestReport& TileRenderer::selfTest() const noexcept { return state_->selfTest; }
+
+Placement TileRenderer::usable(Placement requested) const noexcept {
+  if (requested == Placement::Integer && !state_->selfTest.integerExact) return Placement::Cpu;
+  if (requested == Placement::DoubleFloat && !state_->selfTest.twoSumExact) return Placement::Cpu;
+  return requested;
+}
+
+std::size_t TileRenderer::upload(const std::shared_ptr<const Tile>& tile) { return state_->tiles.upload(*tile); }
+void TileRenderer::remove(const FacePath& path) { state_->tiles.remove(path); }
+void TileRenderer::clear() { state_->tiles.clear(); }
+std::size_t TileRenderer::gpuBytes() const noexcept { return state_->tiles.bytes(); }
+
+DrawStats TileRenderer::draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings) {
+  const Placement placement = usable(settings.placement);
+  GLint framebuffer = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+  if (framebuffer != 0) {
+    glViewport(0, 0, camera.widthPixels, camera.heightPixels);
+    return state_->drawTiles(camera, tiles, settings, placement);
+  }
+  std::array<GLint, 4> viewport{};
+  glGetIntegerv(GL_VIEWPORT, viewport.data());
+  std::optional<RenderTarget>& target = state_->windowTarget;
+  if (!target || target->widthPixels() != camera.widthPixels || target->heightPixels() != camera.heightPixels) {
+    target.reset();
+    auto created = RenderTarget::create(camera.widthPixels, camera.heightPixels);
+    if (!created) return {};
+    target.emplace(std::move(*created));
+  }
+  target->bind();
+  const DrawStats stats = state_->drawTiles(camera, tiles, settings, placement);
+  target->blitToWindow(viewport[2], viewport[3]);
+  return stats;
+}
+
+CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const FacePath> tiles, Placement placement,
+                                          double lowestRadiusMeters) {
+  GLint framebuffer = 0;
+  std::array<GLint, 4> viewport{};
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+  glGetIntegerv(GL_VIEWPORT, viewport.data());
+  std::optional<RenderTarget>& target = state_->coverageTarget;
+  if (!target || target->widthPixels() != camera.widthPixels || target->heightPixels() != camera.heightPixels) {
+    target.reset();
+    auto created = RenderTarget::create(camera.widthPixels, camera.heightPixels, TargetFormat::R8);
+    if (!created) return {};
+    target.emplace(std::move(*created));
+  }
+  target->bind();
+  {
+    const TilePass pass(state_->capabilities, false);
+    state_->forEachTile(camera, state_->nearestFirst(camera, tiles), usable(placement), TilePurpose::Coverage,
+                        [](const TileProgram& program, const GpuTile& tile) {
+                          const SharedIndices& indices = *tile.indices;
+                          program.setMark(1.0f);
+                          drawIndices(indices, 0, indices.surfaceIndices);
+                          program.setMark(0.5f);
+                          drawIndices(indices, indices.surfaceIndices, indices.skirtIndices);
+                        });
+  }
+  const std::vector<std::uint8_t> pixels = target->readRed();
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(framebuffer));
+  glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
+  return countCoveragePixels(camera, pixels, lowestRadiusMeters);
+}
+
+std::vector<float> TileRenderer::clipPositions(const Camera& camera, const FacePath& path, Placement placement) {
+  GpuTile* tile = state_->tiles.find(path);
+  if (tile == nullptr) return {};
+  std::vector<float> positions(4 * tile->vertexCount);
+  gl::Buffer captured;
+  captured.allocate(gl::BufferTarget::Feedback, positions.size() * sizeof(float), gl::BufferUse::ReadBack);
+  captured.bindForFeedback();
+  glEnable(GL_RASTERIZER_DISCARD);
+  state_->forEachTile(camera, std::array{tile}, usable(placement), TilePurpose::Feedback,
+                      [](const TileProgram&, const GpuTile& placed) {
+                        glBeginTransformFeedback(GL_POINTS);
+                        glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(placed.vertexCount));
+                        glEndTransformFeedback();
+                      });
+  glDisable(GL_RASTERIZER_DISCARD);
+  gl::VertexArray::unbind();
+  captured.read(0, std::as_writable_bytes(std::span(positions)));
+  return positions;
+}
+
+}  // namespace terrane

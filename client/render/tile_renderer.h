@@ -1,0 +1,96 @@
+#pragma once
+// Draws terrain tiles with one of four placements, and counts the pixels that a watertight surface must cover. GL thread only; needs a
+// current GL context of 3.3 core or better.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/result.h"
+#include "common/scene/effects.h"
+#include "common/view/camera.h"
+#include "common/view/tile_selection.h"
+#include "proto/tile_mesh.h"
+
+namespace terrane {
+
+/// How a vertex finds its place relative to the camera:
+///   Integer      (origin - camera) in steps + offset, as integers in the shader; converted once, then minus the camera's sub-step rest
+///   DoubleFloat  origin + offset * step as a double-float, minus the camera as a double-float, in the shader
+///   Cpu          double on the CPU, uploaded as camera-relative floats every frame (the reference)
+///   Float32      origin + offset * step as plain floats: the control that jitters
+enum class Placement : std::uint8_t { Integer, DoubleFloat, Cpu, Float32 };
+std::string_view placementName(Placement placement) noexcept;
+/// Errors name "--placement" and list what is allowed.
+Result<Placement> parsePlacement(std::string_view text);
+
+/// What the start-up check of this GPU's arithmetic found (client/render/gpu_self_test.h).
+struct SelfTestReport {
+  bool integerExact = false;          ///< integer add and convert in the vertex shader
+  bool twoSumExact = false;           ///< with precise
+  bool twoProdExact = false;          ///< Dekker's split, with precise
+  bool twoSumWithoutPrecise = false;  ///< for the record: false on drivers that simplify it away
+  bool fmaFused = false;
+  std::string renderer, version;      ///< GL strings
+  Placement chosen = Placement::Integer;
+};
+
+struct DrawSettings {
+  Placement placement = Placement::Integer;
+  bool wireframe = false;
+  bool levelColors = false;
+};
+
+struct RendererOptions {
+  /// Use nothing beyond GL 3.3 core whatever the context has: so that this path is tested on any driver.
+  bool forceBaseline = false;
+};
+
+struct DrawStats {
+  std::size_t tiles = 0, triangles = 0, drawCalls = 0;
+};
+
+struct CoverageCount {
+  std::uint64_t uncovered = 0;  ///< background pixels whose ray meets the body's lowest sphere
+  std::uint64_t skirt = 0;      ///< pixels that show a skirt
+};
+
+class TileRenderer {
+ public:
+  /// effects: those the scene names; only they get a shader variant or a uniform. Errors: Unsupported, Io (shader log).
+  static Result<std::unique_ptr<TileRenderer>> create(const std::vector<EffectCall>& effects, const RendererOptions& options = {});
+  ~TileRenderer();
+
+  const SelfTestReport& selfTest() const noexcept;
+  /// What draw really uses when asked for a placement: what this GPU does not compute exactly falls back to Cpu.
+  Placement usable(Placement requested) const noexcept;
+
+  /// Uploads; returns the bytes taken on the GPU (shared index buffers are counted once).
+  std::size_t upload(const std::shared_ptr<const Tile>& tile);
+  void remove(const FacePath& path);
+  void clear();
+
+  /// Draws into the current framebuffer (colour and depth cleared here). Tiles that were never uploaded are skipped. The window's own
+  /// framebuffer lacks the depth precision: with that bound, draws into a RenderTarget of the camera's size and copies it over.
+  DrawStats draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings);
+
+  /// A pass of tiles only into an own target, read back: no sky, no multisampling, no effects.
+  CoverageCount countCoverage(const Camera& camera, std::span<const FacePath> tiles, Placement placement,
+                              double lowestRadiusMeters);
+
+  /// Clip-space positions (x, y, z, w) of a tile's vertices as the vertex shader computes them, by transform feedback; for the tests
+  /// of placement against a reference of higher precision.
+  std::vector<float> clipPositions(const Camera& camera, const FacePath& tile, Placement placement);
+
+  std::size_t gpuBytes() const noexcept;
+
+ private:
+  struct State;
+  explicit TileRenderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace terrane

@@ -1,0 +1,12 @@
+// The effect "sun": lunar soil under sunlight, as a mix of Lommel-Seeliger and Lambert that follows the phase angle (after McEwen
+// 1991, "Photometric functions for photoclinometry and other applications"; the mix is fitted as the cube of the lit fraction).
+uniform vec3 towardsSun;  // unit, body axes
+uniform float ambient;    // fraction of full light that the night side gets
+
+float litFraction(vec3 normal, vec3 towardsEye) {
+  float incidence = max(dot(normal, towardsSun), 0.0);
+  float emergence = max(dot(normal, towardsEye), 0.0);
+  float lit = 0.5 + 0.5 * dot(towardsSun, towardsEye);
+  float lommelSeeliger = 2.0 * incidence / max(incidence + emergence, 1e-4);
+  return mix(incidence, lommelSeeliger, lit * lit * lit) + ambient;
+}

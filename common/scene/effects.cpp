@@ -1,0 +1,79 @@
+#include "common/scene/effects.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <numbers>
+
+namespace terrane {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+constexpr std::array kSunParameters{
+    ParameterSpec{"longitude", Quantity::Angle, -360 * kDegree, 360 * kDegree, 0,
+                  "longitude of the point that has the sun overhead, east positive"},
+    ParameterSpec{"latitude", Quantity::Angle, -90 * kDegree, 90 * kDegree, 0,
+                  "latitude of the point that has the sun overhead"},
+    ParameterSpec{"ambient", Quantity::Number, 0, 1, 0.02, "light that reaches the shade, as a part of full sunlight"},
+};
+
+// In the order of EffectKind.
+constexpr std::array kEffects{
+    EffectRow{EffectKind::Sun, "sun", "sunlight from one direction, with a night side", "surface normals of the tiles",
+              "one dot product a pixel; no pass, texture or buffer of its own", EffectSide::Client, kSunParameters},
+};
+static_assert(kEffects.size() == kEffectKindCount, "every kind of effect has its row");
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kEffects.size(); ++i)
+        if (static_cast<std::size_t>(kEffects[i].kind) != i) return false;
+      return true;
+    }(),
+    "rows stand in the order of EffectKind");
+
+struct ConstructionCounter {
+  std::mutex mutex;
+  std::map<std::string, int, std::less<>> counts;
+};
+
+ConstructionCounter& constructionCounter() {
+  static ConstructionCounter counter;
+  return counter;
+}
+
+}  // namespace
+
+std::span<const EffectRow> effectTable() noexcept { return kEffects; }
+
+const EffectRow& effectRow(EffectKind kind) noexcept { return kEffects[static_cast<std::size_t>(kind)]; }
+
+std::optional<EffectKind> findEffect(std::string_view name) noexcept {
+  const auto row = std::ranges::find(kEffects, name, &EffectRow::name);
+  if (row == kEffects.end()) return std::nullopt;
+  return row->kind;
+}
+
+void countConstruction(std::string_view name) {
+  ConstructionCounter& counter = constructionCounter();
+  const std::lock_guard lock(counter.mutex);
+  const auto found = counter.counts.find(name);
+  if (found != counter.counts.end())
+    ++found->second;
+  else
+    counter.counts.emplace(name, 1);
+}
+
+std::vector<std::pair<std::string, int>> constructionCounts() {
+  ConstructionCounter& counter = constructionCounter();
+  const std::lock_guard lock(counter.mutex);
+  return {counter.counts.begin(), counter.counts.end()};
+}
+
+void resetConstructionCounts() {
+  ConstructionCounter& counter = constructionCounter();
+  const std::lock_guard lock(counter.mutex);
+  counter.counts.clear();
+}
+
+}  // namespace terrane

@@ -1,0 +1,54 @@
+#include "common/tiling/lattice.h"
+
+#include <cmath>
+
+#include "common/numerics/strict_math.h"
+
+namespace terrane {
+namespace {
+
+constexpr double kHalfPi = 1.5707963267948966;
+
+/// Nearest integer, halves up. floor(x + 0.5) is wrong for 0.5 - 2^-54 and others, since the sum rounds; the difference
+/// below decides rightly for every x, by the monotony of rounding.
+double roundHalfUp(double x) noexcept {
+  const double lower = std::floor(x);
+  return x - lower >= 0.5 ? lower + 1.0 : lower;
+}
+
+}  // namespace
+
+double nominalTileWidthMeters(double radiusMeters, int level) noexcept {
+  return std::ldexp(kHalfPi * radiusMeters, -level);
+}
+
+int stepExponent(double radiusMeters, int level) noexcept {
+  // frexp and ldexp are exact. W / 2^15 = fraction 2^exponent with the fraction in [1/2, 1): only a power of two itself
+  // rounds up to exponent - 1.
+  int exponent = 0;
+  const double fraction = std::frexp(nominalTileWidthMeters(radiusMeters, level), &exponent);
+  return (fraction > 0.5 ? exponent : exponent - 1) - 15;
+}
+
+double stepMeters(int stepExponent) noexcept { return std::ldexp(1.0, stepExponent); }
+
+int maxLevel(double radiusMeters) noexcept {
+  int level = FacePath::kMaxLevel;
+  while (level > 0 && stepExponent(radiusMeters, level) < kMinStepExponent) --level;
+  return level;
+}
+
+LatticePoint roundToLattice(const glm::dvec3& positionBody, int stepExponent) noexcept {
+  const double stepsPerMeter = stepMeters(-stepExponent);
+  return LatticePoint(static_cast<std::int64_t>(roundHalfUp(positionBody.x * stepsPerMeter)),
+                      static_cast<std::int64_t>(roundHalfUp(positionBody.y * stepsPerMeter)),
+                      static_cast<std::int64_t>(roundHalfUp(positionBody.z * stepsPerMeter)));
+}
+
+glm::dvec3 latticePosition(const LatticePoint& point, int stepExponent) noexcept {
+  const double step = stepMeters(stepExponent);
+  return glm::dvec3(static_cast<double>(point.x) * step, static_cast<double>(point.y) * step,
+                    static_cast<double>(point.z) * step);
+}
+
+}  // namespace terrane

@@ -1,0 +1,41 @@
+#pragma once
+// The lattice: every vertex of every tile of one level is rounded to integer multiples of one step, a power of two
+// metres, in the body frame. Two tiles that share a vertex then store the very same integers, over face edges and
+// corners too.
+//   step = 2^ceil(log2(W / 2^15)),  W = the tile's nominal width = (pi/2 R) / 2^level for the cube.
+// A tile stores offsets 0..65535 from its own origin, which is a lattice point too. Thread-safe, no failure.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "common/tiling/face_path.h"
+
+namespace terrane {
+
+/// An exact body-frame position in units of a level's step.
+using LatticePoint = glm::i64vec3;
+
+/// No step below this: a 3D Tiles client loses its shading where a matrix determinant falls under 10^-21.
+inline constexpr int kMinStepExponent = -23;
+inline constexpr int kTileOffsetMax = 65535;
+/// Body radii that the lattice serves, metres: an asteroid of 250 m to the Sun.
+inline constexpr double kMinRadiusMeters = 250.0;
+inline constexpr double kMaxRadiusMeters = 7.0e8;
+
+/// (pi/2 R) / 2^level.
+double nominalTileWidthMeters(double radiusMeters, int level) noexcept;
+
+/// step = 2^exponent metres, exactly as defined above (no logarithm is taken, so no last bit can differ).
+int stepExponent(double radiusMeters, int level) noexcept;
+double stepMeters(int stepExponent) noexcept;
+
+/// The finest level whose step is >= 2^kMinStepExponent metres, at most FacePath::kMaxLevel.
+int maxLevel(double radiusMeters) noexcept;
+
+/// Nearest lattice point, halves up. Precondition: |position| / step < 2^51.
+LatticePoint roundToLattice(const glm::dvec3& positionBody, int stepExponent) noexcept;
+
+/// Exact whenever the coordinates are below 2^53.
+glm::dvec3 latticePosition(const LatticePoint& point, int stepExponent) noexcept;
+
+}  // namespace terrane

@@ -1,0 +1,60 @@
+#pragma once
+// Which tiles to draw and which to ask for, as one pure function of (camera, resident tiles, settings). Hysteresis has no place
+// here: it governs requests and residency (client/tiles). Thread-safe.
+//
+// Tiles are visited level by level from the six faces. A tile is refined when its screen-space error is too large, it has children,
+// all its visible children are resident (for the drawn set), and no neighbour over an edge or corner would end up more than one
+// level coarser (the drawn set is 2:1 balanced). Tiles outside the frustum or below the horizon are skipped.
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "common/tiling/face_path.h"
+#include "common/tiling/tile_bounds.h"
+#include "common/view/camera.h"
+
+namespace terrane {
+
+/// What selection needs to know of a body; filled from scene.json.
+struct SelectionBody {
+  Scheme scheme = Scheme::Cube;
+  double radiusMeters = 0;
+  int maxLevel = 0;
+  HeightRange heights;              ///< proven range of the whole body
+  double occluderRadiusMeters = 0;  ///< lowestSurfaceRadiusMeters(...)
+  /// geometricErrorMeters[level], 0..maxLevel, strictly decreasing: how far a tile's mesh may be from the finest surface.
+  std::vector<double> geometricErrorMeters;
+};
+
+/// What is known of a resident tile. subtreeHeights also bounds every descendant.
+struct ResidentTile {
+  HeightRange subtreeHeights;
+};
+/// Returns null for a tile that is not resident. Called from the calling thread only.
+using ResidentLookup = std::function<const ResidentTile*(const FacePath&)>;
+
+struct SelectionSettings {
+  double errorPixels = 2.0;
+  bool frustumCulling = true;
+  bool horizonCulling = true;
+  int maxTiles = 4000;  ///< a bound on the work; the coarsest come first, so what is cut is the finest
+};
+
+struct WantedTile {
+  FacePath path;
+  double screenErrorPixels = 0;
+  bool leaf = false;  ///< to be drawn once all is there; otherwise an ancestor
+};
+
+struct TileSelection {
+  std::vector<FacePath> draw;      ///< resident, disjoint, covers all that is visible as far as the roots are resident
+  std::vector<WantedTile> wanted;  ///< ancestors and leaves as if everything were resident, coarsest first
+  bool complete = false;           ///< draw equals the leaves of wanted
+  bool rootsMissing = false;       ///< some visible face has no resident tile at all: nothing can be drawn there yet
+};
+
+TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const ResidentLookup& resident,
+                          const SelectionSettings& settings);
+
+}  // namespace terrane

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Runs the benchmarks (medians; ratios measured side by side in one run) and prints them as Markdown.
+# Usage: deploy/bench.sh [--write-readme] [--quick]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+write=false quick=false
+for argument in "$@"; do
+  case "$argument" in
+    --write-readme) write=true ;;
+    --quick) quick=true ;;
+    -h|--help) sed -n '2,3s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "bench: unknown argument $argument (see --help)" >&2; exit 2 ;;
+  esac
+done
+deploy/install.sh >&2
+cmake --preset release >&2
+cmake --build --preset release --target terrane-server terrane-view bench_tile_build bench_viewer >&2
+bin=build/release/bin
+tiles=25 rounds=5 seconds=4
+$quick && tiles=5 rounds=1 seconds=1
+
+report=$(mktemp)
+trap 'rm -f "$report"' EXIT
+{
+  echo "**Building a tile**, by level, beside what stock Draco (edgebreaker, speed 7, 16 bits) alone takes for the same mesh:"
+  echo
+  "$bin/bench_tile_build" --tiles "$tiles"
+  echo
+  echo "**Serving a cached tile**, beside nginx serving the same file:"
+  echo
+  tests/bench/http_bench.sh "$bin" "$rounds" "$seconds"
+  echo
+  echo "**Viewing** at 1280×720 on software OpenGL (llvmpipe), beside a bare loop that draws the same triangles:"
+  echo
+  tests/bench/viewer_bench.sh "$bin" "$($quick && echo 10 || echo 60)"
+} | tee "$report"
+
+if $write; then
+  python3 - "$report" <<'PY'
+import re, sys
+body = open(sys.argv[1]).read().strip()
+text = open("README.md").read()
+text = re.sub(r"(<!-- bench:begin -->\n).*?(<!-- bench:end -->)", lambda m: m.group(1) + body + "\n" + m.group(2), text, flags=re.S)
+open("README.md", "w").write(text)
+PY
+  echo "bench: README.md updated" >&2
+fi

@@ -1,0 +1,29 @@
+# Flags every translation unit gets. Tiles must be the same bytes on every machine, so contraction is off and value-changing
+# optimisations are never on; -fno-trapping-math and -fno-math-errno change no result and let plain loops vectorise.
+add_library(terrane_flags INTERFACE)
+add_library(terrane::flags ALIAS terrane_flags)
+target_compile_options(terrane_flags INTERFACE
+  -ffp-contract=off -fno-math-errno -fno-trapping-math
+  -Wall -Wextra -Wconversion -Wshadow -Wno-sign-conversion -Werror)
+target_compile_definitions(terrane_flags INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE_EXPLICIT_CTOR)
+target_include_directories(terrane_flags INTERFACE ${CMAKE_SOURCE_DIR})
+
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  target_compile_options(terrane_flags INTERFACE -Wno-shorten-64-to-32 -Wno-implicit-int-float-conversion)
+endif()
+if(TERRANE_SANITIZERS)
+  target_compile_options(terrane_flags INTERFACE -fsanitize=${TERRANE_SANITIZERS} -fno-omit-frame-pointer)
+  target_link_options(terrane_flags INTERFACE -fsanitize=${TERRANE_SANITIZERS})
+  if(TERRANE_SANITIZERS MATCHES "undefined")
+    target_compile_options(terrane_flags INTERFACE -fno-sanitize-recover=all)
+  endif()
+  if(TERRANE_SANITIZERS MATCHES "thread")
+    # Beast's timeouts and Asio's fences are atomics that ThreadSanitizer models; its warning about fences is no finding.
+    target_compile_options(terrane_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
+  endif()
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()

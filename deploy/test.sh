@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Everything that a change must pass: installs what is missing, builds, tests. The last lines are ctest's.
+# Usage: deploy/test.sh [--full]
+#   --full adds: debug, Clang and -march=native builds, clang-tidy, ten minutes of fuzzing, 200 random cameras
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+full=false
+for argument in "$@"; do
+  case "$argument" in
+    --full) full=true ;;
+    -h|--help) sed -n '2,5s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "test: unknown argument $argument (see --help)" >&2; exit 2 ;;
+  esac
+done
+
+step() { printf '\n== %s (%ds)\n' "$1" "$SECONDS"; }
+
+step "install"
+deploy/install.sh
+
+step "formatting"
+git ls-files '*.cpp' '*.h' '*.inl' | xargs -r clang-format --dry-run --Werror
+
+build() { cmake --preset "$1" >/dev/null && cmake --build --preset "$1"; }
+
+step "build: release"
+build release
+
+for sanitizer in asan-ubsan tsan; do
+  step "build: $sanitizer"
+  build "$sanitizer"
+  step "unit and integration tests under $sanitizer"
+  ctest --preset "$sanitizer" -j 2 --quiet --output-on-failure -O "build/$sanitizer/ctest.log" \
+    || { tail -n 60 "build/$sanitizer/ctest.log"; exit 1; }
+  tail -n 12 "build/$sanitizer/ctest.log"
+done
+
+if $full; then
+  step "build and test: debug"
+  build debug
+  ctest --preset debug -j 2 --output-on-failure -L 'unit|numeric|integration'
+  step "Clang and -march=native: the same golden tiles"
+  for variant in "clang++ -O3" "g++ -O3 -march=native" "clang++ -O3 -march=native" "g++ -O0"; do
+    compiler=${variant%% *}; flags=${variant#* }
+    directory="build/matrix-$(tr -c 'a-z0-9+\n' '-' <<<"$variant")"
+    cmake -G Ninja -S . -B "$directory" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler" \
+      -DCMAKE_CXX_FLAGS_RELEASE="$flags" -DTERRANE_BENCHMARKS=OFF >/dev/null
+    cmake --build "$directory"
+    ctest --test-dir "$directory" -j 2 --output-on-failure -L 'unit|numeric|integration'
+  done
+  step "clang-tidy"
+  git ls-files 'common/*.cpp' 'proto/*.cpp' 'server/*.cpp' 'client/*.cpp' | xargs -P 2 -n 4 clang-tidy -p build/release --quiet
+  step "fuzzing"
+  build fuzz
+  for target in build/fuzz/bin/fuzz_*; do
+    mkdir -p "build/fuzz/corpus/$(basename "$target")"
+    "$target" -max_total_time=120 -rss_limit_mb=1024 -timeout=10 -print_final_stats=1 "build/fuzz/corpus/$(basename "$target")"
+  done
+  export TERRANE_CAMERAS=200
+fi
+
+step "all tests: release"
+ctest --preset release

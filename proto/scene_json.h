@@ -1,0 +1,35 @@
+#pragma once
+// scene.json: what a viewer must know before it asks for the first tile. Thread-safe.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/result.h"
+#include "common/scene/effects.h"
+#include "common/tiling/tile_bounds.h"
+#include "common/view/tile_selection.h"
+
+namespace terrane {
+
+struct BodyInfo {
+  std::string name;
+  std::string revision;  ///< hash of what shapes the body's tile bytes
+  std::vector<Scheme> schemes;
+  int cellsPerEdge = 64;
+  SelectionBody selection;  ///< radius, levels, heights, geometric errors
+};
+
+struct SceneInfo {
+  std::string name;
+  std::string summary;
+  std::vector<BodyInfo> bodies;
+  std::vector<EffectCall> effects;
+};
+
+std::string writeSceneJson(const SceneInfo& scene);
+/// Any bytes: a scene or one error naming the key, e.g. "bodies[0].radiusMeters". Unknown effects are skipped, so that an old
+/// viewer opens a newer server's scene.
+Result<SceneInfo> readSceneJson(std::string_view json);
+
+}  // namespace terrane

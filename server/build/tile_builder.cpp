@@ -1,0 +1,257 @@
+#include "server/build/tile_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "common/numerics/strict_math.h"
+#include "proto/gltf_tile.h"
+#include "server/build/grid_directions.h"
+#include "server/build/level_accuracy.h"
+#include "server/build/tile_revision.h"
+#include "server/build/tile_topology.h"
+
+namespace terrane {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// What a build needs besides its result; kept between builds, so that the steady state allocates little.
+struct BuildScratch {
+  GridDirections directions;
+  SurfaceSamples samples;
+  std::vector<LatticePoint> lattice;  ///< of all vertices, skirts included
+};
+
+/// Hands each build its own scratch. As many exist as builds ever ran at once.
+class ScratchPool {
+ public:
+  std::unique_ptr<BuildScratch> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<BuildScratch>();
+    std::unique_ptr<BuildScratch> scratch = std::move(free_.back());
+    free_.pop_back();
+    return scratch;
+  }
+  void giveBack(std::unique_ptr<BuildScratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(scratch));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<BuildScratch>> free_;
+};
+
+HeightRange rangeOf(const std::vector<double>& heights) {
+  const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
+  return {*lowest, *highest};
+}
+
+/// Where the grid's vertices and the skirts below them fall on the lattice.
+void placeVertices(const GridDirections& at, const std::vector<double>& heights, const TileTopology& topology,
+                   double radiusMeters, double skirtMeters, int exponent, std::vector<LatticePoint>& out) {
+  const auto place = [&](std::size_t vertex, double height) {
+    const double radius = radiusMeters + height;
+    return roundToLattice({at.x[vertex] * radius, at.y[vertex] * radius, at.z[vertex] * radius}, exponent);
+  };
+  out.clear();
+  for (std::size_t vertex = 0; vertex < heights.size(); ++vertex) out.push_back(place(vertex, heights[vertex]));
+  for (const std::uint32_t anchor : topology.skirtAnchors) out.push_back(place(anchor, heights[anchor] - skirtMeters));
+}
+
+/// Offsets from the componentwise smallest point, which becomes the origin. False if one does not fit into 16 bits.
+bool offsetsFromOrigin(const std::vector<LatticePoint>& lattice, LatticePoint& origin, std::vector<std::uint16_t>& offsets) {
+  LatticePoint lowest = lattice.front(), highest = lowest;
+  for (const LatticePoint& p : lattice) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lowest[axis] = std::min(lowest[axis], p[axis]);
+      highest[axis] = std::max(highest[axis], p[axis]);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (highest[axis] - lowest[axis] > kTileOffsetMax) return false;
+  origin = lowest;
+  offsets.resize(3 * lattice.size());
+  for (std::size_t i = 0; i < lattice.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      offsets[3 * i + static_cast<std::size_t>(axis)] = static_cast<std::uint16_t>(lattice[i][axis] - lowest[axis]);
+  return true;
+}
+
+/// Normal of the surface (R + h) d, whose tangents are those of the sphere lifted by the gradient g at radius R: (1 + h/R) d - g.
+void writeNormals(const GridDirections& at, const SurfaceSamples& samples, double radiusMeters, std::vector<float>& out) {
+  const std::size_t count = samples.heightMeters.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double radial = 1.0 + samples.heightMeters[i] / radiusMeters;
+    const double x = at.x[i] * radial - static_cast<double>(samples.gradientX[i]);
+    const double y = at.y[i] * radial - static_cast<double>(samples.gradientY[i]);
+    const double z = at.z[i] * radial - static_cast<double>(samples.gradientZ[i]);
+    const double norm = std::sqrt((x * x + y * y) + z * z);
+    out[3 * i] = static_cast<float>(x / norm);
+    out[3 * i + 1] = static_cast<float>(y / norm);
+    out[3 * i + 2] = static_cast<float>(z / norm);
+  }
+}
+
+void writeColors(const std::vector<float>& reflectance, std::vector<std::uint8_t>& out) {
+  for (std::size_t i = 0; i < reflectance.size(); ++i) {
+    const float scaled = std::floor(reflectance[i] * (255.0f / kColorScale) + 0.5f);
+    const auto grey = static_cast<std::uint8_t>(std::clamp(scaled, 0.0f, 255.0f));
+    out[3 * i] = out[3 * i + 1] = out[3 * i + 2] = grey;
+  }
+}
+
+/// A skirt vertex looks like the edge vertex it hangs from.
+template <class T>
+void copyToSkirts(const TileTopology& topology, std::vector<T>& values) {
+  std::size_t skirt = 3 * topology.gridVertexCount();
+  for (const std::uint32_t anchor : topology.skirtAnchors)
+    for (std::size_t axis = 0; axis < 3; ++axis) values[skirt++] = values[3 * static_cast<std::size_t>(anchor) + axis];
+}
+
+}  // namespace
+
+struct TileBuilder::State {
+  Body body;
+  WireSettings wire;
+  std::unique_ptr<const HeightField> field;
+  BodyInfo info;
+  HeightRange fieldHeights;
+  std::vector<LevelAccuracy> levels;
+  std::shared_ptr<const TileTopology> topology;
+  mutable ScratchPool scratch;
+
+  Result<Tile> buildMesh(const FacePath& path, BuildScratch& scratchMemory, BuildTimes& times) const;
+  Result<void> checkPath(const FacePath& path) const;
+  void describe(const FacePath& path, TileMetadata& metadata, const HeightRange& vertexHeights) const;
+};
+
+TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(std::make_unique<State>()) {
+  State& state = *state_;
+  state.body = std::move(body);
+  state.wire = wire;
+  state.field = makeHeightField(state.body, simd);
+  state.fieldHeights = state.field->heightRange();
+  state.topology = makeTileTopology(wire.cellsPerEdge);
+  const double radius = state.body.radiusMeters;
+  const int deepest = maxLevel(radius);
+  state.levels = levelAccuracies(*state.field, radius, wire.cellsPerEdge, deepest);
+
+  state.info.name = state.body.name;
+  state.info.revision = tileRevision(state.body, state.field->identity(), wire, "1.5.5");
+  state.info.schemes = state.body.schemes;
+  state.info.cellsPerEdge = wire.cellsPerEdge;
+  SelectionBody& selection = state.info.selection;
+  selection.scheme = Scheme::Cube;
+  selection.radiusMeters = radius;
+  selection.maxLevel = deepest;
+  selection.heights = {state.fieldHeights.minMeters - state.levels.front().skirtMeters, state.fieldHeights.maxMeters};
+  selection.occluderRadiusMeters = lowestSurfaceRadiusMeters(radius, state.fieldHeights.minMeters, wire.cellsPerEdge);
+  for (const LevelAccuracy& level : state.levels) selection.geometricErrorMeters.push_back(level.geometricErrorMeters);
+}
+
+TileBuilder::~TileBuilder() = default;
+TileBuilder::TileBuilder(TileBuilder&&) noexcept = default;
+
+const Body& TileBuilder::body() const noexcept { return state_->body; }
+const BodyInfo& TileBuilder::info() const noexcept { return state_->info; }
+
+Result<void> TileBuilder::State::checkPath(const FacePath& path) const {
+  if (path.scheme() != Scheme::Cube || std::find(body.schemes.begin(), body.schemes.end(), path.scheme()) == body.schemes.end())
+    return makeError(ErrorKind::InvalidArgument, "scheme",
+                     body.name + " has no tiles of the scheme " + std::string(schemeName(path.scheme())));
+  if (path.level() > info.selection.maxLevel)
+    return makeError(ErrorKind::InvalidArgument, "digits",
+                     "level " + std::to_string(path.level()) + " is finer than the finest of " + body.name + ", " +
+                         std::to_string(info.selection.maxLevel));
+  return {};
+}
+
+void TileBuilder::State::describe(const FacePath& path, TileMetadata& metadata, const HeightRange& vertexHeights) const {
+  const auto level = static_cast<std::size_t>(path.level());
+  const LevelAccuracy& accuracy = levels[level];
+  const double skirt = accuracy.skirtMeters;
+  metadata.heights = {vertexHeights.minMeters - skirt, vertexHeights.maxMeters};
+
+  // Descendants: their vertices, then the skirts below them; neither leaves what the field can give at all.
+  const double slack = accuracy.subtreeSlackMeters;
+  const double finerSkirt = level + 1 < levels.size() ? levels[level + 1].skirtMeters : 0.0;
+  const double lowest = std::max(vertexHeights.minMeters - slack, fieldHeights.minMeters) - finerSkirt;
+  metadata.subtreeHeights = {std::min(metadata.heights.minMeters, lowest),
+                             std::max(vertexHeights.maxMeters, std::min(vertexHeights.maxMeters + slack, fieldHeights.maxMeters))};
+
+  const TileBounds bounds = tileBounds(path, body.radiusMeters, metadata.subtreeHeights, info.selection.occluderRadiusMeters);
+  metadata.path = path;
+  metadata.geometricErrorMeters = accuracy.geometricErrorMeters;
+  metadata.sphere = bounds.sphere;
+  metadata.horizonPoint = bounds.horizonPoint;
+  metadata.cellsPerEdge = wire.cellsPerEdge;
+  metadata.skirtMeters = static_cast<float>(skirt);
+}
+
+Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& memory, BuildTimes& times) const {
+  if (const Result<void> checked = checkPath(path); checked.has_error()) return checked.error();
+  const auto start = Clock::now();
+  const double radius = body.radiusMeters;
+  const LevelAccuracy& accuracy = levels[static_cast<std::size_t>(path.level())];
+  gridDirections(path, wire.cellsPerEdge, memory.directions);
+  const auto side = static_cast<std::size_t>(wire.cellsPerEdge) + 1;
+  const SampleBatch batch{memory.directions.x.data(), memory.directions.y.data(), memory.directions.z.data(), side, side};
+  field->evaluate(batch, accuracy.minWavelengthMeters, memory.samples);
+  times.fieldMs += millisecondsSince(start);
+
+  const auto meshStart = Clock::now();
+  Tile tile;
+  tile.metadata.stepExponent = stepExponent(radius, path.level());
+  placeVertices(memory.directions, memory.samples.heightMeters, *topology, radius, accuracy.skirtMeters,
+                tile.metadata.stepExponent, memory.lattice);
+  if (!offsetsFromOrigin(memory.lattice, tile.metadata.origin, tile.mesh.offsets))
+    return makeError(ErrorKind::TooLarge, "digits",
+                     path.text() + " of " + body.name + " is steeper than 16 bits of its lattice can hold");
+  const std::size_t vertices = topology->gridIndices.size();
+  tile.mesh.normals.resize(3 * vertices);
+  writeNormals(memory.directions, memory.samples, radius, tile.mesh.normals);
+  copyToSkirts(*topology, tile.mesh.normals);
+  if (!memory.samples.reflectance.empty()) {
+    tile.mesh.colors.resize(3 * vertices);
+    writeColors(memory.samples.reflectance, tile.mesh.colors);
+    copyToSkirts(*topology, tile.mesh.colors);
+  }
+  tile.mesh.gridIndices = topology->gridIndices;
+  tile.mesh.triangles = topology->triangles;
+  describe(path, tile.metadata, rangeOf(memory.samples.heightMeters));
+  times.meshMs += millisecondsSince(meshStart);
+  return tile;
+}
+
+Result<Tile> TileBuilder::buildMesh(const FacePath& path, BuildTimes* times) const {
+  BuildTimes ignored;
+  std::unique_ptr<BuildScratch> memory = state_->scratch.take();
+  Result<Tile> tile = state_->buildMesh(path, *memory, times != nullptr ? *times : ignored);
+  state_->scratch.giveBack(std::move(memory));
+  return tile;
+}
+
+Result<BuiltTile> TileBuilder::build(const FacePath& path) const {
+  BuiltTile built;
+  const Result<Tile> tile = buildMesh(path, &built.times);
+  if (tile.has_error()) return tile.error();
+  const auto dracoStart = Clock::now();
+  const Result<DracoBuffer> draco = encodeDraco(tile->mesh, state_->wire.draco);
+  if (draco.has_error()) return draco.error();
+  built.times.dracoMs = millisecondsSince(dracoStart);
+  const auto glbStart = Clock::now();
+  Result<std::vector<std::uint8_t>> glb = writeTileGlb(tile->metadata, tile->mesh, *draco);
+  if (glb.has_error()) return glb.error();
+  built.glb = std::move(*glb);
+  built.times.glbMs = millisecondsSince(glbStart);
+  return built;
+}
+
+}  // namespace terrane

@@ -1,0 +1,55 @@
+#pragma once
+// Builds the tiles of one body: grid directions -> field -> lattice -> mesh with skirts -> Draco -> GLB. A tile is a pure function of
+// (body, path, wire settings): no clock, no thread order. build is const and thread-safe; each thread keeps its own scratch.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/result.h"
+#include "common/scene/scene.h"
+#include "proto/draco_mesh.h"
+#include "proto/scene_json.h"
+#include "proto/tile_mesh.h"
+#include "server/fields/height_field.h"
+
+namespace terrane {
+
+/// Raise when the bytes of any tile change for reasons that no setting shows: the golden hashes refuse a change without it.
+inline constexpr int kGeneratorVersion = 1;
+
+struct WireSettings {
+  int cellsPerEdge = 64;
+  DracoSettings draco;
+};
+
+struct BuildTimes {
+  double fieldMs = 0, meshMs = 0, dracoMs = 0, glbMs = 0;
+};
+
+struct BuiltTile {
+  std::vector<std::uint8_t> glb;
+  BuildTimes times;
+};
+
+class TileBuilder {
+ public:
+  TileBuilder(Body body, WireSettings wire, SimdPath simd);
+  ~TileBuilder();
+  TileBuilder(TileBuilder&&) noexcept;
+
+  const Body& body() const noexcept;
+  const BodyInfo& info() const noexcept;  ///< as scene.json gives it, with the revision
+
+  /// The mesh before encoding. Errors: InvalidArgument (path deeper than the body's cap, wrong scheme).
+  Result<Tile> buildMesh(const FacePath& path, BuildTimes* times = nullptr) const;
+  Result<BuiltTile> build(const FacePath& path) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace terrane

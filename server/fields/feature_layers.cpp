@@ -1,0 +1,300 @@
+#include "server/fields/feature_layers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/numerics/strict_math.h"
+#include "common/tiling/cube_sphere.h"
+
+namespace terrane::lunar {
+namespace {
+
+/// 2^exponent, exactly.
+double powerOfTwo(int exponent) noexcept { return std::ldexp(1.0, exponent); }
+
+double interpolate(std::span<const double> table, double position) noexcept {
+  const double last = static_cast<double>(table.size() - 1);
+  const double clamped = std::clamp(position, 0.0, last);
+  const auto index = std::min(static_cast<std::size_t>(clamped), table.size() - 2);
+  const double t = clamped - static_cast<double>(index);
+  return table[index] + t * (table[index + 1] - table[index]);
+}
+
+/// Piecewise linear in D between powers of two: exponent + (D / 2^exponent - 1).
+double octavePosition(double diameter) noexcept {
+  int exponent = 0;
+  const double mantissa = std::frexp(diameter, &exponent);  // diameter = mantissa * 2^exponent, mantissa in [1/2, 1)
+  return static_cast<double>(exponent - 1) + (2.0 * mantissa - 1.0);
+}
+
+// Depth over diameter at 16, 32, ... 16384 m, and from there on depth and rim height in metres at 16384, 32768, ... 524288 m.
+constexpr std::array<double, 11> kSimpleRatio{0.115, 0.12, 0.12, 0.14, 0.155, 0.18, 0.195, 0.2, 0.2, 0.19, 0.147};
+constexpr std::array<double, 6> kComplexDepth{2410, 2960, 3650, 4490, 5540, 6800};
+constexpr std::array<double, 6> kComplexRim{600, 900, 1240, 1640, 2170, 2800};
+
+struct Cell {
+  int face;
+  std::uint32_t column, row;
+};
+
+std::uint64_t cellHash(const FeatureLayer& layer, const Cell& cell) noexcept {
+  std::uint64_t h = layer.seed + static_cast<std::uint64_t>(cell.face) * 0xD6E8FEB86659FD93ull;
+  h = mixHash(h ^ (static_cast<std::uint64_t>(cell.column) << 32 | cell.row));
+  return h;
+}
+
+/// Patches of many and of few features, 0..2, mean 1: bilinear between hashed corners every 16 cells.
+double patchiness(const FeatureLayer& layer, const Cell& cell) noexcept {
+  const std::uint32_t i = cell.column >> 4, j = cell.row >> 4;
+  const double u = static_cast<double>(cell.column & 15u) / 16.0, v = static_cast<double>(cell.row & 15u) / 16.0;
+  const auto corner = [&](std::uint32_t di, std::uint32_t dj) {
+    const double r = hashUnit(mixHash(cellHash(layer, {cell.face, i + di, j + dj}) ^ 0xA0761D6478BD642Full));
+    return 3.0 * r * r;
+  };
+  const double low = corner(0, 0) + u * (corner(1, 0) - corner(0, 0));
+  const double high = corner(0, 1) + u * (corner(1, 1) - corner(0, 1));
+  return low + v * (high - low);
+}
+
+double wearOf(const FeatureLayer& layer, std::uint64_t h) noexcept {
+  const double u = hashUnit(h);
+  const double skewed = layer.wearSkew > 1 ? 1.0 - (1.0 - u) * (1.0 - u) : layer.wearSkew < 1 ? u * u : u;
+  return layer.wearMin + (layer.wearMax - layer.wearMin) * skewed;
+}
+
+void tangentFrame(const double n[3], std::uint64_t hash, double axis1[3], double axis2[3]) noexcept {
+  // A hashed vector, made orthogonal to n. It is never parallel to n in practice; the fallback keeps it finite all the same.
+  double v[3] = {2 * hashUnit(mixHash(hash ^ 1)) - 1, 2 * hashUnit(mixHash(hash ^ 2)) - 1, 2 * hashUnit(mixHash(hash ^ 3)) - 1};
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const double along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+    for (int i = 0; i < 3; ++i) axis1[i] = v[i] - along * n[i];
+    const double norm = std::sqrt(axis1[0] * axis1[0] + axis1[1] * axis1[1] + axis1[2] * axis1[2]);
+    if (norm > 1e-3) {
+      for (int i = 0; i < 3; ++i) axis1[i] /= norm;
+      break;
+    }
+    v[0] = n[1];
+    v[1] = n[2];
+    v[2] = -n[0];
+  }
+  axis2[0] = n[1] * axis1[2] - n[2] * axis1[1];
+  axis2[1] = n[2] * axis1[0] - n[0] * axis1[2];
+  axis2[2] = n[0] * axis1[1] - n[1] * axis1[0];
+}
+
+/// Lobes of the orders 2..5 whose amplitudes sum to at most `bound`.
+void randomLobes(Feature& f, std::uint64_t hash, double bound) noexcept {
+  constexpr double kShare[kLobes] = {0.35, 0.25, 0.2, 0.2};
+  for (int k = 0; k < kLobes; ++k) {
+    // |cos| + |sin| amplitude <= share * bound, so the wave stays within it.
+    const double a = 2 * hashUnit(mixHash(hash ^ (16u + static_cast<unsigned>(k)))) - 1;
+    const double b = 2 * hashUnit(mixHash(hash ^ (32u + static_cast<unsigned>(k)))) - 1;
+    f.lobeCos[k] = 0.5 * kShare[k] * bound * (a + b);
+    f.lobeSin[k] = 0.5 * kShare[k] * bound * (a - b);
+  }
+}
+
+Feature makeRock(const double direction[3], double bodyRadius, double diameter, std::uint64_t hash) noexcept {
+  Feature f{};
+  const double norm = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+  const double n[3] = {direction[0] / norm, direction[1] / norm, direction[2] / norm};
+  for (int i = 0; i < 3; ++i) f.center[i] = n[i] * bodyRadius;
+  tangentFrame(n, hash, f.axis1, f.axis2);
+  randomLobes(f, hash, kRockLobes);
+  f.radius = 0.5 * diameter;
+  f.reach = f.heightReach = f.radius / (1 - kRockLobes) * (1 + 1e-5);
+  f.floorBlend = f.rimBlend = 1;
+  f.peak = f.radius * (0.35 + 0.55 * hashUnit(mixHash(hash ^ 5)));
+  f.brightness = static_cast<float>(0.01 + 0.035 * hashUnit(mixHash(hash ^ 6)));
+  f.inverseHaloSquared = 1.0f;
+  return f;
+}
+
+struct Range {
+  std::uint32_t first = 1, last = 0;  ///< empty if first > last
+};
+
+/// Cells along one face axis that a ball may touch: the ball's box, projected from the body's centre. along, outward: the ball's centre.
+Range cellRange(double along, double outward, double reach, std::uint32_t cells) noexcept {
+  const double nearest = outward - reach, farthest = outward + reach;
+  double low = -1, high = 1;
+  if (nearest > 0) {
+    low = (along - reach) / (along - reach < 0 ? nearest : farthest);
+    high = (along + reach) / (along + reach < 0 ? farthest : nearest);
+  }
+  if (low > 1 || high < -1) return {};
+  const double scale = 0.5 * static_cast<double>(cells);
+  // A cell of slack absorbs the rounding of atan.
+  const double first = std::floor((atanQuarterPi(std::clamp(low, -1.0, 1.0)) + 1) * scale - 1e-3);
+  const double last = std::floor((atanQuarterPi(std::clamp(high, -1.0, 1.0)) + 1) * scale + 1e-3);
+  const double top = static_cast<double>(cells - 1);
+  return {static_cast<std::uint32_t>(std::clamp(first, 0.0, top)), static_cast<std::uint32_t>(std::clamp(last, 0.0, top))};
+}
+
+}  // namespace
+
+std::uint64_t mixHash(std::uint64_t h) noexcept {
+  h += 0x9E3779B97F4A7C15ull;
+  h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9ull;
+  h = (h ^ (h >> 27)) * 0x94D049BB133111EBull;
+  return h ^ (h >> 31);
+}
+
+double FeatureLayer::smallestDiameter() const noexcept { return powerOfTwo(exponent); }
+
+Morphometry freshCrater(double diameter) noexcept {
+  const double position = octavePosition(diameter);
+  if (diameter < 16384) {
+    const double depth = diameter * interpolate(kSimpleRatio, position - 4);
+    return {depth, 0.037 * diameter * (depth / (0.2 * diameter)), 0.12, 0};
+  }
+  const double size = position - 14;
+  const double depth = interpolate(kComplexDepth, size), rim = interpolate(kComplexRim, size);
+  return {depth, rim, 0.42 + 0.07 * std::min(size, 4.0), 0.28 * depth};
+}
+
+Feature makeCrater(const double direction[3], double bodyRadius, double diameter, double wear, std::uint64_t hash) noexcept {
+  Feature f{};
+  const double norm = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+  const double n[3] = {direction[0] / norm, direction[1] / norm, direction[2] / norm};
+  for (int i = 0; i < 3; ++i) f.center[i] = n[i] * bodyRadius;
+  tangentFrame(n, hash, f.axis1, f.axis2);
+  randomLobes(f, hash, kCraterLobes);
+
+  const Morphometry fresh = freshCrater(diameter);
+  f.radius = 0.5 * diameter;
+  const double depth = fresh.depth * (1 - 0.8 * wear);
+  f.rim = fresh.rim * (1 - 0.72 * wear);
+  f.floor = f.rim - depth;  // below the surroundings
+  const double floorRadius = fresh.floorRadius + (0.55 - 0.5 * fresh.floorRadius) * wear;
+  const double floorSquared = floorRadius * floorRadius;
+  f.apex = (f.floor - f.rim * floorSquared) / (1 - floorSquared);
+  f.rise = f.rim - f.apex;
+  f.floorBlend = depth * (0.15 + 0.55 * wear);
+  f.rimBlend = f.rim * (0.7 + 4.5 * wear);
+  const bool peaked = diameter > 20000 && diameter < 200000 && wear < 0.6;
+  f.peak = peaked ? fresh.peak * (1 - wear) : 0;
+  f.heightReach = kApronRadii * f.radius / (1 - kCraterLobes) * (1 + 1e-5);
+  f.reach = f.heightReach;
+  f.inverseHaloSquared = 1.0f;
+  return f;
+}
+
+bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::uint32_t column, std::uint32_t row,
+                   Feature& out) {
+  const Cell cell{face, column, row};
+  const std::uint64_t hash = cellHash(layer, cell);
+  const double share = layer.stage == FeatureStage::Rock ? std::min(1.0, layer.occupancy * patchiness(layer, cell)) : layer.occupancy;
+  if (hashUnit(hash) >= share) return false;
+
+  // Cumulative N(> D) ~ D^-2 between D0 and 2 D0: D = D0 / sqrt(1 - 3/4 u).
+  const double diameter = layer.smallestDiameter() / std::sqrt(1 - 0.75 * hashUnit(mixHash(hash ^ 7)));
+  const bool rock = layer.stage == FeatureStage::Rock;
+  const double bowl = 0.5 * diameter / (1 - (rock ? kRockLobes : kCraterLobes));
+
+  // Margin to the cell's sides, in face angle: a point at angle a from the side's great circle, measured along the face's own grid, is
+  // at least R sin(a) g away from it, g = sqrt((1 + X^2) / (1 + X^2 + Y^2)), here taken at the worst place of the cell.
+  const double width = 2.0 / static_cast<double>(layer.cellsPerFace);
+  const double s0 = width * static_cast<double>(column) - 1, t0 = width * static_cast<double>(row) - 1;
+  const auto squares = [](double a, double b) {
+    const double ta = tanQuarterPi(std::clamp(a, -1.0, 1.0)), tb = tanQuarterPi(std::clamp(b, -1.0, 1.0));
+    const double least = a * b <= 0 ? 0 : std::min(ta * ta, tb * tb);
+    return std::array<double, 2>{least, std::max(ta * ta, tb * tb)};
+  };
+  const auto xs = squares(s0, s0 + width), ys = squares(t0, t0 + width);
+  const auto margin = [&](double least, double most) {
+    const double g = std::sqrt((1 + least) / (1 + least + most));
+    const double sine = bowl / (bodyRadius * g);
+    return sine * (1 + 0.2 * sine * sine) * (4 / 3.14159265358979323846);  // asin(x) <= x (1 + 0.2 x^2) for x <= 0.6
+  };
+  const double marginS = margin(xs[0], ys[1]), marginT = margin(ys[0], xs[1]);
+  const double roomS = width - 2 * marginS, roomT = width - 2 * marginT;
+  if (roomS < 0 || roomT < 0) return false;
+  const double s = s0 + marginS + roomS * hashUnit(mixHash(hash ^ 8));
+  const double t = t0 + marginT + roomT * hashUnit(mixHash(hash ^ 9));
+  const glm::dvec3 direction = cubeDirection(face, s, t);
+  const double d[3] = {direction.x, direction.y, direction.z};
+  if (rock) {
+    out = makeRock(d, bodyRadius, diameter, hash);
+    return true;
+  }
+  const double wear = wearOf(layer, mixHash(hash ^ 10));
+  out = makeCrater(d, bodyRadius, diameter, wear, hash);
+  if (layer.stage == FeatureStage::YoungCrater && wear < 0.12) {
+    const double youth = 1 - wear / 0.12;
+    out.brightness = static_cast<float>(0.09 * youth);
+    out.rays = static_cast<float>(0.6 * youth);
+    out.reach = kHaloRadii * out.radius * (1 + 1e-5);
+    out.inverseHaloSquared = static_cast<float>(1 / (kHaloRadii * kHaloRadii));
+  }
+  return true;
+}
+
+void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const double center[3], double ballRadius,
+                    std::vector<Feature>& out) {
+  const bool rock = layer.stage == FeatureStage::Rock;
+  const double halo = layer.stage == FeatureStage::YoungCrater ? kHaloRadii : kApronRadii / (1 - kCraterLobes);
+  const double reach = ballRadius + 0.51 * layer.largestDiameter() * (rock ? 1 / (1 - kRockLobes) : halo);
+  for (int face = 0; face < 6; ++face) {
+    const FaceAxes& axes = cubeFaceAxes(face);
+    const auto along = [&](const glm::dvec3& a) { return a.x * center[0] + a.y * center[1] + a.z * center[2]; };
+    const double outward = along(axes.normal);
+    if (outward + reach < 0) continue;
+    const Range columns = cellRange(along(axes.u), outward, reach, layer.cellsPerFace);
+    const Range rows = cellRange(along(axes.v), outward, reach, layer.cellsPerFace);
+    if (columns.first > columns.last) continue;
+    for (std::uint32_t row = rows.first; row <= rows.last && rows.first <= rows.last; ++row) {
+      for (std::uint32_t column = columns.first; column <= columns.last; ++column) {
+        Feature f;
+        if (!featureOfCell(layer, bodyRadius, face, column, row, f)) continue;
+        const double dx = f.center[0] - center[0], dy = f.center[1] - center[1], dz = f.center[2] - center[2];
+        const double limit = ballRadius + f.reach;
+        if (dx * dx + dy * dy + dz * dz <= limit * limit) out.push_back(f);
+      }
+    }
+  }
+}
+
+std::vector<FeatureLayer> makeLayers(const LayerSettings& settings) {
+  std::vector<FeatureLayer> layers;
+  const double halfCircle = 1.5707963267948966 * settings.radiusMeters;  // a face is a quarter of a great circle wide
+  const auto add = [&](FeatureStage stage, int exponent, double occupancy, double wearMin, double wearMax, double skew,
+                       std::uint64_t salt) {
+    FeatureLayer layer;
+    layer.stage = stage;
+    layer.exponent = exponent;
+    layer.occupancy = occupancy;
+    layer.wearMin = wearMin;
+    layer.wearMax = wearMax;
+    layer.wearSkew = skew;
+    layer.seed = mixHash(settings.seed ^ mixHash(salt * 1000 + static_cast<std::uint64_t>(exponent + 100)));
+    const double cells = std::floor(halfCircle / (2 * layer.largestDiameter()));
+    if (cells < 2 || layer.wavelengthMeters() < settings.finestDetailMeters || occupancy <= 0) return;
+    layer.cellsPerFace = static_cast<std::uint32_t>(std::min(cells, 4294967295.0));
+    layers.push_back(layer);
+  };
+  const double craters = settings.craterDensity, rocks = settings.rockDensity;
+  // From 262 km down to 2 km: highland craters, older than the lava; twice over where they stand rim on rim.
+  constexpr double kOld[] = {0.5, 0.8, 0.85, 0.85, 0.7, 0.65, 0.55, 0.5};
+  for (int k = 18; k >= 11; --k) {
+    add(FeatureStage::OldCrater, k, craters * kOld[18 - k], k >= 15 ? 0.05 : 0.1, k >= 15 ? 0.75 : 0.85, 1, 1);
+    if (k <= 17 && k >= 15) add(FeatureStage::OldCrater, k, craters * 0.7, 0.3, 0.9, 1, 5);
+  }
+  // Younger than the lava: few large ones, saturated from some hundred metres down.
+  for (int k = 14; k >= -4; --k) {
+    constexpr double kYoung[] = {0.09, 0.11, 0.14, 0.19, 0.26, 0.4, 0.6, 0.8};  // 16 km .. 128 m
+    const int index = 14 - k;
+    const double share = index < 8 ? kYoung[index] : 0.92;
+    const bool small = k <= 8;
+    add(FeatureStage::YoungCrater, k, craters * share, 0.0, small ? 0.95 : 0.8, small ? 2 : 1, 2);
+    if (k <= 8) add(FeatureStage::YoungCrater, k, craters * 0.85, 0.5, 0.97, 1, 3);
+  }
+  // Boulders of metres down to grains.
+  constexpr double kRock[] = {0.004, 0.008, 0.015, 0.025, 0.035, 0.05, 0.07, 0.1, 0.16, 0.25, 0.35};
+  for (int k = 1; k >= -9; --k) add(FeatureStage::Rock, k, rocks * kRock[1 - k], 0, 0, 1, 4);
+  std::stable_sort(layers.begin(), layers.end(),
+                   [](const FeatureLayer& a, const FeatureLayer& b) { return a.exponent > b.exponent; });
+  return layers;
+}
+
+}  // namespace terrane::lunar

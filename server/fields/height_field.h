@@ -1,0 +1,64 @@
+#pragma once
+// A height field over the sphere: heights, gradients and reflectance for many directions at once, limited to the wavelengths that a
+// tile level can show, with proven bounds on all that is left out. Deterministic: equal inputs give equal bits on every machine,
+// thread and SIMD path, whatever else is in the batch. Body frame, metres. const is thread-safe.
+
+#include <cstddef>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "common/result.h"
+#include "common/scene/scene.h"
+#include "common/tiling/tile_bounds.h"
+
+namespace terrane {
+
+/// Which build of the vector kernels runs. All give the same bits; tests run all.
+enum class SimdPath : std::uint8_t { Default, V3, V4 };
+/// The best that this CPU has.
+SimdPath bestSimdPath() noexcept;
+bool simdPathSupported(SimdPath path) noexcept;
+/// "default", "v3", "v4"; errors name "--simd".
+Result<SimdPath> parseSimdPath(std::string_view text);
+
+/// Directions to sample, structure of arrays. Rows matter only for speed (a kernel may skip whole rows): count = rows * rowLength.
+struct SampleBatch {
+  const double* x = nullptr;  ///< unit directions, body frame
+  const double* y = nullptr;
+  const double* z = nullptr;
+  std::size_t rows = 0, rowLength = 0;
+  std::size_t count() const noexcept { return rows * rowLength; }
+};
+
+/// Results, resized by evaluate; kept by the caller between calls so that nothing is allocated in the steady state.
+struct SurfaceSamples {
+  std::vector<double> heightMeters;
+  /// Gradient of the height along the surface (tangent to the sphere of radius R), body frame, dimensionless (metres per metre).
+  std::vector<float> gradientX, gradientY, gradientZ;
+  std::vector<float> reflectance;  ///< linear normal albedo, 0..kColorScale; empty if the field has one colour
+  struct Scratch;                  ///< kernels' own memory
+  std::shared_ptr<Scratch> scratch;
+};
+
+class HeightField {
+ public:
+  virtual ~HeightField() = default;
+
+  /// Components with wavelengths of at least minWavelengthMeters (a tile level's two cells).
+  virtual void evaluate(const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out) const = 0;
+
+  /// Proven: |h(all wavelengths down to finestWavelengthMeters) - h(down to minWavelengthMeters)| <= this, everywhere.
+  virtual double omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept = 0;
+  /// Proven: how far h(down to minWavelengthMeters) may be from the bilinear surface through samples spacingMeters apart.
+  virtual double interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept = 0;
+  /// Proven range of all heights.
+  virtual HeightRange heightRange() const noexcept = 0;
+  /// What shapes the field's values, for the body's revision: name, version and every parameter.
+  virtual std::string identity() const = 0;
+};
+
+/// Makes what the body names, and counts it ("field.lunar"). Never constructs another.
+std::unique_ptr<const HeightField> makeHeightField(const Body& body, SimdPath simd);
+
+}  // namespace terrane

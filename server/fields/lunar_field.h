@@ -1,0 +1,48 @@
+#pragma once
+// The Moon as a height field. Body frame, metres; immutable and thread-safe. In order of age:
+//   relief   broad noise, the great basins (lunar_landmarks.h), and the old craters of the highlands; clamped to its stated range
+//   lava     stands in the basins at its own nearly level height: surface = roundedMax(relief, lava), so that coasts, bays, islands
+//            and half-drowned craters come out by themselves; where lava wins, the ground is dark and smooth
+//   young    craters of all sizes since then (feature_layers.h), down to decimetres, and rocks and stones
+//   regolith fractal noise whose slopes grow slowly towards small scales, rougher in some places than in others
+// Noise below 8 km, craters below 1 km and rocks are computed in float32 relative to their cell or centre, the rest in double: no
+// step above a hundredth of a millimetre anywhere. Every SIMD path, batch and thread gives the same bits.
+
+#include <string>
+#include <vector>
+
+#include "server/fields/feature_layers.h"
+#include "server/fields/height_field.h"
+#include "server/fields/lunar_program.h"
+
+namespace terrane {
+
+class LunarField final : public HeightField {
+ public:
+  LunarField(const Body& body, SimdPath simd);
+  void evaluate(const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out) const override;
+  double omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept override;
+  double interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept override;
+  HeightRange heightRange() const noexcept override;
+  std::string identity() const override;
+
+ private:
+  void makeNoise();
+  void makeLandmarks();
+
+  double radius_;
+  std::uint64_t seed_;
+  double mareFraction_, craterDensity_, roughness_, rockDensity_, finestDetail_;
+  lunar::EvaluateBlock evaluateBlock_;
+
+  std::vector<lunar::NoiseOctave> octaves_;
+  std::vector<lunar::NoiseGroup> groups_;  ///< the first is relief
+  std::vector<lunar::Basin> basins_;
+  std::vector<lunar::LavaPatch> patches_;
+  std::vector<lunar::RaySystem> rays_;
+  std::vector<lunar::Feature> landmarkCraters_;  ///< by falling diameter
+  std::vector<lunar::FeatureLayer> layers_;
+  lunar::Program base_{};  ///< without noise counts and runs
+};
+
+}  // namespace terrane

@@ -1,0 +1,137 @@
+#pragma once
+// What the lunar kernels run: plain tables (noise octaves, landmarks, craters and rocks) and the block of samples that they work on.
+// Plain data only, so that the vector builds of the kernels emit no inline function that the linker could pick for code that
+// must run on older CPUs. Body frame, metres. Tables are read-only during a run; a block belongs to one thread.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace terrane::lunar {
+
+/// Samples are worked on in compact blocks that stay in the first-level cache, in steps of one AVX-512 vector.
+inline constexpr std::size_t kChunk = 16;
+inline constexpr std::size_t kBlockSide = 13;
+inline constexpr std::size_t kBlockCapacity = 176;  // kBlockSide^2, rounded up to whole chunks
+inline constexpr std::size_t kBlockChunks = kBlockCapacity / kChunk;
+
+/// One octave of gradient noise. cell coordinate = (rotation * position) / wavelength + offset.
+struct NoiseOctave {
+  double inverseWavelength;  ///< a power of two: the product is exact
+  double offset[3];          ///< moves the lattice, so that the zeros of two octaves never meet
+  double amplitude;          ///< metres, of relief or regolith
+  double lavaAmplitude;      ///< metres, of the lava's surface (relief group only)
+  std::uint32_t seed;
+};
+
+/// Octaves that share a rotation and are summed before they are turned back.
+struct NoiseGroup {
+  const NoiseOctave* octaves;
+  std::size_t count;
+  double rotation[9];  ///< row-major; orthogonal
+  double modulation;   ///< group is scaled by 1 + modulation * (last octave of the group before, -1.04..1.04)
+};
+
+/// A basin: a bowl (1 - u^2)^3 with a ring of mountains around u = 1, u = distance^2 / radius^2.
+struct Basin {
+  double center[3];
+  double inverseRadiusSquared;
+  double reach;  ///< metres: no influence beyond
+  double depth, ring;
+};
+
+/// Where lava may stand: 1 within the inner radius, 0 beyond reach, in u = distance^2 / reach^2.
+struct LavaPatch {
+  double center[3];
+  double inverseReachSquared;
+  double reach;
+  double innerSquared;  ///< u up to which the patch is 1
+  double inverseRamp;   ///< 1 / (1 - innerSquared)
+};
+
+/// Rays of a young crater: reflectance only.
+struct RaySystem {
+  double center[3];
+  double axis1[3], axis2[3];
+  double inverseRadius, reach;
+  float inverseReachInRadii, strength;
+  float phase[6];  ///< cos, sin of three phases
+};
+
+inline constexpr int kLobes = 4;  // angular orders 2..5
+
+/// One crater or rock.
+struct Feature {
+  double center[3];
+  double axis1[3], axis2[3];  ///< tangent frame
+  double radius;
+  double heightReach, reach;  ///< metres (chord); beyond: no height; no reflectance either
+  double apex, rise;          ///< bowl = apex + rise * s, s = (distance / radius)^2
+  double floor, floorBlend;   ///< flat floor
+  double rim, rimBlend;       ///< rim height; roundness of the crest
+  double peak;                ///< central peak (crater), height (rock)
+  double lobeCos[kLobes], lobeSin[kLobes];
+  float brightness, inverseHaloSquared, rays;
+};
+
+inline constexpr double kApronRadii = 2.2;         ///< ejecta end here, in crater radii
+inline constexpr double kPeakRadiusSquared = 0.06; ///< central peak, in crater radii squared
+
+enum class FeatureStage : std::uint8_t { OldCrater, YoungCrater, Rock };
+
+/// Features of one layer, in canonical order.
+struct FeatureRun {
+  const Feature* features;
+  std::size_t count;
+  FeatureStage stage;
+  bool inDouble;  ///< large ones: float32 would show steps of a tenth of a millimetre
+};
+
+struct Program {
+  double radius;
+  NoiseGroup relief;             ///< double; two sums: relief and lava
+  const NoiseGroup* regolith;    ///< float32
+  std::size_t regolithCount;
+  const Basin* basins;
+  std::size_t basinCount;
+  const LavaPatch* patches;
+  std::size_t patchCount;
+  const RaySystem* rays;
+  std::size_t rayCount;
+  const FeatureRun* runs;
+  std::size_t runCount;
+  double lavaTop, lavaFloor, lavaBlend;
+  double reliefLow, reliefHigh, reliefBlend;
+  double mareSmoothing;  ///< regolith in full mare is scaled by 1 - this
+  double inverseReliefAmplitude;
+};
+
+/// All of a block's working memory and its results.
+struct alignas(64) Block {
+  std::size_t count;  ///< padded to whole chunks
+  double low[3], high[3];
+  double chunkCenter[kBlockChunks][3], chunkRadius[kBlockChunks];
+  double center[3], radius;
+
+  alignas(64) double x[kBlockCapacity], y[kBlockCapacity], z[kBlockCapacity];
+  alignas(64) double rotatedX[kBlockCapacity], rotatedY[kBlockCapacity], rotatedZ[kBlockCapacity];
+  alignas(64) double relief[kBlockCapacity], lava[kBlockCapacity], dry[kBlockCapacity];
+  alignas(64) float reliefX[kBlockCapacity], reliefY[kBlockCapacity], reliefZ[kBlockCapacity];
+  alignas(64) float lavaX[kBlockCapacity], lavaY[kBlockCapacity], lavaZ[kBlockCapacity];
+  alignas(64) float dryX[kBlockCapacity], dryY[kBlockCapacity], dryZ[kBlockCapacity];
+  alignas(64) double young[kBlockCapacity];
+  alignas(64) float youngX[kBlockCapacity], youngY[kBlockCapacity], youngZ[kBlockCapacity];
+  alignas(64) float rough[kBlockCapacity], roughX[kBlockCapacity], roughY[kBlockCapacity], roughZ[kBlockCapacity];
+  alignas(64) float bright[kBlockCapacity], mottle[kBlockCapacity];
+
+  alignas(64) double height[kBlockCapacity];
+  alignas(64) float gradientX[kBlockCapacity], gradientY[kBlockCapacity], gradientZ[kBlockCapacity];
+  alignas(64) float reflectance[kBlockCapacity];
+};
+
+using EvaluateBlock = void (*)(const Program&, Block&) noexcept;
+
+void evaluateBlockDefault(const Program& program, Block& block) noexcept;
+void evaluateBlockV3(const Program& program, Block& block) noexcept;
+void evaluateBlockV4(const Program& program, Block& block) noexcept;
+
+}  // namespace terrane::lunar

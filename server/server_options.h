@@ -1,0 +1,30 @@
+#pragma once
+// The command line of terrane-server. Main thread only.
+
+#include <string>
+#include <variant>
+
+#include "common/result.h"
+#include "server/http/http_server.h"
+#include "server/http/tile_service.h"
+
+namespace terrane {
+
+struct ServerSettings {
+  std::string scene = "moon";
+  ServerOptions http;
+  TileService::Options service;
+  std::string logLevel = "info";
+  bool check = false;    ///< validate the scene and exit
+  bool explain = false;  ///< describe what would run and exit
+};
+
+/// Text to print to stdout, exit 0: --help, --version.
+struct PrintAndExit {
+  std::string text;
+};
+
+/// Errors: one line; field names the flag where one is to blame.
+Result<std::variant<ServerSettings, PrintAndExit>> parseServerCommandLine(int argc, const char* const* argv);
+
+}  // namespace terrane

@@ -1,0 +1,95 @@
+// What a tile costs to build, by level, beside what stock Draco alone takes for the same mesh in the same run.
+// Usage: bench_tile_build [--tiles N] [--scene NAME]; prints a Markdown table of medians, one core.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/build/tile_builder.h"
+#include "server/scenes/scene_file.h"
+#include "tests/bench/stock_draco.h"
+
+namespace {
+
+using namespace terrane;
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+FacePath randomTile(std::mt19937_64& random, int level) {
+  const std::uint32_t columns = 1u << level;
+  return FacePath::cubeTile(static_cast<int>(random() % 6), level, static_cast<std::uint32_t>(random() % columns),
+                            static_cast<std::uint32_t>(random() % columns));
+}
+
+struct Row {
+  std::vector<double> field, mesh, draco, glb, total, stock, stockDeduplicated, bytes;
+};
+
+bool measure(const TileBuilder& builder, const FacePath& path, const DracoSettings& settings, Row& row) {
+  const auto tile = builder.buildMesh(path);
+  if (!tile) return false;
+  const auto stock = bench::encodeWithStockDraco(tile->mesh, settings, false);
+  const auto built = builder.build(path);
+  if (!built) return false;
+  const auto deduplicated = bench::encodeWithStockDraco(tile->mesh, settings, true);
+  row.field.push_back(built->times.fieldMs);
+  row.mesh.push_back(built->times.meshMs);
+  row.draco.push_back(built->times.dracoMs);
+  row.glb.push_back(built->times.glbMs);
+  row.total.push_back(built->times.fieldMs + built->times.meshMs + built->times.dracoMs + built->times.glbMs);
+  row.stock.push_back(stock.milliseconds);
+  row.stockDeduplicated.push_back(deduplicated.milliseconds);
+  row.bytes.push_back(static_cast<double>(built->glb.size()));
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int tiles = 25;
+  std::string sceneName = "moon";
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::string_view(argv[i]) == "--tiles") tiles = std::max(1, std::atoi(argv[i + 1]));
+    if (std::string_view(argv[i]) == "--scene") sceneName = argv[i + 1];
+  }
+  const auto scene = loadScene(sceneName);
+  if (!scene) {
+    fmt::print(stderr, "bench_tile_build: {}\n", scene.error().text());
+    return 2;
+  }
+  const WireSettings wire;
+  DracoSettings stockSettings = wire.draco;
+  stockSettings.speed = 7;
+  const TileBuilder builder(scene->bodies.front(), wire, bestSimdPath());
+  std::mt19937_64 random(20260101);
+
+  fmt::print("| level | field ms | mesh ms | Draco ms | GLB ms | tile ms | stock Draco ms (with de-duplication) | tile / stock | KB |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|\n");
+  std::vector<double> ratios;
+  for (int level = 0; level <= std::min(24, builder.info().selection.maxLevel); level += 2) {
+    Row row;
+    measure(builder, randomTile(random, level), stockSettings, row);  // warm-up, dropped
+    row = {};
+    for (int i = 0; i < tiles; ++i) {
+      if (!measure(builder, randomTile(random, level), stockSettings, row)) return 1;
+    }
+    const double ratio = median(row.total) / median(row.stock);
+    ratios.push_back(ratio);
+    fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.2f} | {:.2f} ({:.2f}) | {:.2f} | {:.1f} |\n", level, median(row.field),
+               median(row.mesh), median(row.draco), median(row.glb), median(row.total), median(row.stock),
+               median(row.stockDeduplicated), ratio, median(row.bytes) / 1024);
+  }
+  fmt::print("\nMedian of the ratios: {:.2f}; largest: {:.2f}. {} tiles a level, one core, SIMD path {}.\n", median(ratios),
+             *std::max_element(ratios.begin(), ratios.end()), tiles,
+             bestSimdPath() == SimdPath::V4 ? "v4" : bestSimdPath() == SimdPath::V3 ? "v3" : "default");
+  return 0;
+}

@@ -1,0 +1,146 @@
+#include "client/tiles/ground_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "common/tiling/cube_sphere.h"
+#include "tests/unit/client/small_tiles.h"
+
+namespace terrane {
+namespace {
+
+using testing::SmallTileOptions;
+using testing::smallTile;
+
+double hilly(const glm::dvec3& d) { return 800.0 * d.x * d.y + 500.0 * d.z * d.z * d.x - 300.0 * d.y; }
+
+struct Place {
+  glm::dvec3 direction;
+  double u, v;
+};
+
+Place placeIn(const FacePath& path, double u, double v) {
+  const double tiles = std::ldexp(1.0, path.level());
+  return {cubeDirection(path.face(), 2 * (path.column() + u) / tiles - 1, 2 * (path.row() + v) / tiles - 1), u, v};
+}
+
+/// Every triangle of the mesh, in long double: the tests' own, slow answer.
+std::optional<double> bruteForceHeight(const Tile& tile, const glm::dvec3& direction, double radius) {
+  using Vector = glm::tvec3<long double>;
+  const Vector d = glm::normalize(Vector(direction));
+  const auto position = [&](std::uint32_t vertex) {
+    const auto step = static_cast<long double>(stepMeters(tile.metadata.stepExponent));
+    Vector p;
+    for (int k = 0; k < 3; ++k) {
+      p[k] = step * static_cast<long double>(tile.metadata.origin[k] + tile.mesh.offsets[3 * vertex + static_cast<std::size_t>(k)]);
+    }
+    return p;
+  };
+  for (std::size_t t = 0; t < tile.mesh.triangles.size(); t += 3) {
+    const Vector a = position(tile.mesh.triangles[t]), b = position(tile.mesh.triangles[t + 1]), c = position(tile.mesh.triangles[t + 2]);
+    const Vector normal = glm::cross(b - a, c - a);
+    const long double along = glm::dot(normal, a) / glm::dot(normal, d);
+    const Vector p = d * along;
+    const long double edge = -1e-7L * glm::dot(normal, normal);
+    if (glm::dot(glm::cross(b - a, p - a), normal) >= edge && glm::dot(glm::cross(c - b, p - b), normal) >= edge &&
+        glm::dot(glm::cross(a - c, p - c), normal) >= edge) {
+      return static_cast<double>(along - static_cast<long double>(radius));
+    }
+  }
+  return std::nullopt;
+}
+
+TEST(GroundMesh, AgreesWithEveryTriangleTriedInHigherPrecision) {
+  constexpr unsigned kSeed = 20240711;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int compared = 0;
+  for (const double radius : {250.0, testing::kMoonRadius, 7.0e8}) {
+    for (int level = 0; level <= maxLevel(radius); level += level < 3 ? 1 : 4) {
+      for (const bool alternate : {false, true}) {
+        const auto side = static_cast<double>(std::uint64_t{1} << level);
+        const FacePath path = FacePath::cubeTile(static_cast<int>(6 * unit(random)), level, static_cast<std::uint32_t>(side * unit(random)),
+                                                 static_cast<std::uint32_t>(side * unit(random)));
+        const double scale = std::min(1.0, radius / 1e5);
+        const Tile tile = smallTile(path, [scale](const glm::dvec3& d) { return scale * hilly(d); },
+                                    SmallTileOptions{radius, 8, alternate, true});
+        const GroundMesh mesh = GroundMesh::fromTile(tile);
+        ASSERT_FALSE(mesh.empty());
+        for (int i = 0; i < 60; ++i) {
+          const Place place = placeIn(path, unit(random), unit(random));
+          const auto height = mesh.heightMeters(place.direction, place.u, place.v, radius);
+          const auto expected = bruteForceHeight(tile, place.direction, radius);
+          ASSERT_TRUE(height) << path.text() << " at " << place.u << ", " << place.v;
+          if (!expected) continue;  // outside by less than a step: the answer is the nearest triangle's plane
+          ++compared;
+          EXPECT_NEAR(*height, *expected, 4 * 2.3e-16 * radius) << path.text() << " radius " << radius;
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 2000);
+}
+
+TEST(GroundMesh, AFlatSphereIsNeverAboveItsRadiusAndSagsByTheChord) {
+  const FacePath path = *FacePath::parse("cube/2/0312");
+  const GroundMesh mesh = GroundMesh::fromTile(smallTile(path, [](const glm::dvec3&) { return 0.0; }));
+  const double cell = nominalTileWidthMeters(testing::kMoonRadius, 4) / testing::kSmallCells;
+  const double sag = cell * cell / (4 * testing::kMoonRadius);  // half the diagonal, squared, over 2 R
+  const double step = stepMeters(stepExponent(testing::kMoonRadius, 4));
+  for (double u = 0.01; u < 1; u += 0.07) {
+    for (double v = 0.01; v < 1; v += 0.07) {
+      const Place place = placeIn(path, u, v);
+      const auto height = mesh.heightMeters(place.direction, u, v, testing::kMoonRadius);
+      ASSERT_TRUE(height);
+      EXPECT_LE(*height, step);
+      EXPECT_GE(*height, -1.05 * sag - step);
+    }
+  }
+}
+
+TEST(GroundMesh, UsesTheDiagonalThatIsDrawn) {
+  // One corner of a cell is 100 m high: across the cell the two diagonals differ by half of that in the middle.
+  const FacePath path = *FacePath::parse("cube/0/0123012301");
+  const Place peak = placeIn(path, 0.25, 0.25);
+  const auto spike = [&](const glm::dvec3& d) { return glm::dot(d, peak.direction) > 1 - 1e-12 ? 100.0 : 0.0; };
+  const Place middle = placeIn(path, 0.375, 0.375);  // of the cell whose corner 00 is the peak
+  SmallTileOptions options;
+  const auto rising = GroundMesh::fromTile(smallTile(path, spike, options)).heightMeters(middle.direction, middle.u, middle.v, testing::kMoonRadius);
+  EXPECT_NEAR(*rising, 50.0, 1.0) << "the diagonal 00-11 goes up to the peak";
+  const Place beside = placeIn(path, 0.125, 0.375);  // of the cell whose corner 10 is the peak
+  const auto besideRising = GroundMesh::fromTile(smallTile(path, spike, options)).heightMeters(beside.direction, beside.u, beside.v, testing::kMoonRadius);
+  EXPECT_NEAR(*besideRising, 0.0, 1.0);
+  options.alternateDiagonals = true;  // the cell (0, 1) has the other diagonal, 10-01
+  const auto besideFalling = GroundMesh::fromTile(smallTile(path, spike, options)).heightMeters(beside.direction, beside.u, beside.v, testing::kMoonRadius);
+  EXPECT_NEAR(*besideFalling, 50.0, 1.0);
+}
+
+TEST(GroundMesh, RefusesIncompleteGrids) {
+  const FacePath path = *FacePath::parse("cube/1/2");
+  const Tile whole = smallTile(path, hilly);
+  EXPECT_FALSE(GroundMesh::fromTile(whole).empty());
+  Tile broken = whole;
+  broken.mesh.gridIndices[3] = 9999;
+  EXPECT_TRUE(GroundMesh::fromTile(broken).empty());
+  broken = whole;
+  broken.mesh.offsets.pop_back();
+  EXPECT_TRUE(GroundMesh::fromTile(broken).empty());
+  broken = whole;
+  broken.metadata.cellsPerEdge = 0;
+  EXPECT_TRUE(GroundMesh::fromTile(broken).empty());
+  broken = whole;
+  broken.mesh.triangles[0] = 1'000'000;
+  EXPECT_FALSE(GroundMesh::fromTile(broken).empty()) << "a triangle that names no vertex is skipped";
+  EXPECT_FALSE(GroundMesh().heightMeters({0, 0, 1}, 0.5, 0.5, 1.0));
+}
+
+TEST(GroundMesh, KeepsSixBytesAVertex) {
+  const GroundMesh mesh = GroundMesh::fromTile(smallTile(*FacePath::parse("cube/1/2"), hilly, SmallTileOptions{testing::kMoonRadius, 64, false, false}));
+  EXPECT_LE(mesh.bytes(), 6u * 65 * 65 + 64 * 64 / 8 + 200);
+}
+
+}  // namespace
+}  // namespace terrane

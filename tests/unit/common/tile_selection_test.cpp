@@ -1,0 +1,301 @@
+#include "common/view/tile_selection.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "common/tiling/cube_sphere.h"
+#include "common/tiling/lattice.h"
+
+namespace terrane {
+namespace {
+
+constexpr double kMoon = 1'737'400.0;
+constexpr double kPi = std::numbers::pi;
+constexpr unsigned kSeed = 2;
+constexpr HeightRange kHeights{-9000, 9000};
+
+SelectionBody moon(int deepest = 24) {
+  SelectionBody body;
+  body.radiusMeters = kMoon;
+  body.maxLevel = deepest;
+  body.heights = kHeights;
+  body.occluderRadiusMeters = lowestSurfaceRadiusMeters(kMoon, kHeights.minMeters, 64);
+  for (int level = 0; level <= deepest; ++level)
+    body.geometricErrorMeters.push_back(0.4 / 64 * nominalTileWidthMeters(kMoon, level));
+  return body;
+}
+
+/// The true ground of these tests: a smooth swell, so that heights tighten with the level as a real body's do.
+HeightRange heightsOf(const FacePath& path) {
+  const double width = nominalTileWidthMeters(kMoon, path.level());
+  const double middle = 2000 * std::sin(0.7 * path.face() + 3.0 * path.ancestor(std::min(path.level(), 3)).row());
+  const double reach = std::min(7000.0, 0.1 * width);
+  return {middle - reach, middle + reach};
+}
+
+/// Tiles that are there. A tile's parent is always there too, as the client keeps it.
+class Residents {
+ public:
+  void add(const FacePath& path) {
+    for (int level = 0; level <= path.level(); ++level) {
+      const FacePath ancestor = path.ancestor(level);
+      tiles_[ancestor] = ResidentTile{heightsOf(ancestor)};
+    }
+  }
+  void addRoots() {
+    for (int face = 0; face < 6; ++face) add(FacePath::wholeFace(Scheme::Cube, face));
+  }
+  ResidentLookup lookup() const {
+    return [this](const FacePath& path) {
+      const auto found = tiles_.find(path);
+      return found == tiles_.end() ? nullptr : &found->second;
+    };
+  }
+  bool has(const FacePath& path) const { return tiles_.contains(path); }
+
+ private:
+  std::unordered_map<FacePath, ResidentTile> tiles_;
+};
+
+/// Loads what is wanted until nothing more is, as a client on a fast line does.
+TileSelection settle(const Camera& camera, const SelectionBody& body, const SelectionSettings& settings, Residents& residents) {
+  TileSelection selection;
+  for (int round = 0; round < 40; ++round) {
+    selection = selectTiles(camera, body, residents.lookup(), settings);
+    bool news = false;
+    for (const WantedTile& tile : selection.wanted) {
+      news = news || !residents.has(tile.path);
+      residents.add(tile.path);
+    }
+    if (!news) break;
+  }
+  return selection;
+}
+
+struct Views {
+  std::mt19937_64 random{kSeed};
+  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+  Camera camera() {
+    const double pitches[] = {-kPi / 2, 0.0, between(-kPi / 2, kPi / 2)};
+    const ViewPose pose{between(-kPi, kPi), std::asin(between(-1, 1)), std::pow(10.0, between(3.5, 7)), between(-kPi, kPi),
+                        pitches[random() % 3]};
+    return cameraFromPose(pose, kMoon, 0.9, 1280, 720);
+  }
+};
+
+using PathSet = std::unordered_set<FacePath>;
+
+bool hasAncestorIn(const FacePath& path, const PathSet& set, int* steps = nullptr) {
+  for (int level = path.level() - 1; level >= 0; --level) {
+    if (!set.contains(path.ancestor(level))) continue;
+    if (steps != nullptr) *steps = path.level() - level;
+    return true;
+  }
+  return false;
+}
+
+void expectDisjointAndBalanced(const std::vector<FacePath>& draw) {
+  const PathSet set(draw.begin(), draw.end());
+  EXPECT_EQ(set.size(), draw.size());
+  for (const FacePath& path : draw) {
+    EXPECT_FALSE(hasAncestorIn(path, set)) << path.text() << " lies below another drawn tile";
+    for (int side = 0; side < kSideCount; ++side) {
+      const std::optional<FacePath> neighbour = path.neighbour(static_cast<Side>(side));
+      int steps = 0;
+      if (neighbour && hasAncestorIn(*neighbour, set, &steps)) {
+        EXPECT_LE(steps, 1) << path.text() << " beside a tile " << steps << " levels coarser";
+      }
+    }
+  }
+}
+
+TEST(TileSelection, DrawsWhatIsWantedOnceAllIsThere) {
+  Views views;
+  RecordProperty("seed", kSeed);
+  for (int i = 0; i < 60; ++i) {
+    const Camera camera = views.camera();
+    Residents residents;
+    const TileSelection selection = settle(camera, moon(), {}, residents);
+    EXPECT_TRUE(selection.complete);
+    EXPECT_FALSE(selection.rootsMissing);
+    PathSet leaves;
+    for (const WantedTile& tile : selection.wanted)
+      if (tile.leaf) leaves.insert(tile.path);
+    EXPECT_EQ(leaves, PathSet(selection.draw.begin(), selection.draw.end()));
+  }
+}
+
+TEST(TileSelection, MeetsTheErrorEverywhereItMayRefine) {
+  Views views;
+  const SelectionBody body = moon(8);
+  for (int i = 0; i < 60; ++i) {
+    Residents residents;
+    for (const WantedTile& tile : settle(views.camera(), body, {}, residents).wanted) {
+      if (tile.leaf && tile.path.level() < body.maxLevel) {
+        EXPECT_LE(tile.screenErrorPixels, 2.0) << tile.path.text();
+      }
+      if (!tile.leaf) {
+        EXPECT_GT(tile.screenErrorPixels, 2.0) << tile.path.text();
+      }
+    }
+  }
+}
+
+TEST(TileSelection, StaysDisjointAndBalancedWhateverIsResident) {
+  Views views;
+  RecordProperty("seed", kSeed);
+  const SelectionBody body = moon(12);
+  int coarserThanWanted = 0;
+  for (int i = 0; i < 150; ++i) {
+    const Camera camera = views.camera();
+    // A tolerance this loose refines towards the camera in steep steps, so that balance has work to do in the wanted set as well.
+    const SelectionSettings settings{.errorPixels = i % 3 == 0 ? 40.0 : 2.0};
+    Residents all;
+    const TileSelection settled = settle(camera, body, settings, all);
+    expectDisjointAndBalanced(settled.draw);
+    Residents some;
+    some.addRoots();
+    for (const WantedTile& tile : settled.wanted)
+      if (views.between(0, 1) < 0.7) some.add(tile.path);
+    const TileSelection partial = selectTiles(camera, body, some.lookup(), settings);
+    expectDisjointAndBalanced(partial.draw);
+    coarserThanWanted += !partial.complete;
+    for (const FacePath& path : partial.draw) EXPECT_TRUE(some.has(path));
+  }
+  EXPECT_GT(coarserThanWanted, 75);
+}
+
+TEST(TileSelection, LeavesNoHoleWhereRootsAreThere) {
+  Views views;
+  const SelectionBody body = moon(12);
+  for (int i = 0; i < 100; ++i) {
+    const Camera camera = views.camera();
+    Residents all, some;
+    some.addRoots();
+    for (const WantedTile& tile : settle(camera, body, {}, all).wanted)
+      if (views.between(0, 1) < 0.8) some.add(tile.path);
+    const TileSelection selection = selectTiles(camera, body, some.lookup(), {});
+    EXPECT_FALSE(selection.rootsMissing);
+    const PathSet drawn(selection.draw.begin(), selection.draw.end());
+    for (const WantedTile& tile : selection.wanted) {
+      if (tile.leaf) {
+        EXPECT_TRUE(drawn.contains(tile.path) || hasAncestorIn(tile.path, drawn)) << tile.path.text();
+      }
+    }
+  }
+}
+
+TEST(TileSelection, ATileThatArrivesNeverMakesTheGroundCoarser) {
+  Views views;
+  const SelectionBody body = moon(12);
+  for (int i = 0; i < 40; ++i) {
+    const Camera camera = views.camera();
+    Residents all, arriving;
+    std::vector<FacePath> order;
+    for (const WantedTile& tile : settle(camera, body, {}, all).wanted) order.push_back(tile.path);
+    std::shuffle(order.begin(), order.end(), views.random);
+    // Bounds that do not change with what is known, so that only residency does.
+    static const ResidentTile kAny{kHeights};
+    const ResidentLookup lookup = [&](const FacePath& path) { return arriving.has(path) ? &kAny : nullptr; };
+    arriving.addRoots();
+    std::vector<FacePath> before = selectTiles(camera, body, lookup, {}).draw;
+    for (std::size_t next = 0; next < order.size(); next += 7) {
+      for (std::size_t k = next; k < std::min(next + 7, order.size()); ++k) arriving.add(order[k]);
+      const std::vector<FacePath> after = selectTiles(camera, body, lookup, {}).draw;
+      const PathSet set(after.begin(), after.end());
+      for (const FacePath& path : before) EXPECT_FALSE(hasAncestorIn(path, set)) << path.text();
+      before = after;
+    }
+  }
+}
+
+TEST(TileSelection, IsAPureFunctionOfItsArguments) {
+  Views views;
+  for (int i = 0; i < 20; ++i) {
+    const Camera camera = views.camera();
+    Residents residents;
+    settle(camera, moon(), {}, residents);
+    const TileSelection a = selectTiles(camera, moon(), residents.lookup(), {});
+    selectTiles(views.camera(), moon(), residents.lookup(), {});
+    const TileSelection b = selectTiles(camera, moon(), residents.lookup(), {});
+    EXPECT_EQ(a.draw, b.draw);
+    ASSERT_EQ(a.wanted.size(), b.wanted.size());
+    for (std::size_t k = 0; k < a.wanted.size(); ++k) EXPECT_EQ(a.wanted[k].path, b.wanted[k].path);
+  }
+}
+
+TEST(TileSelection, AsksForTheCoarsestFirst) {
+  Residents residents;
+  const TileSelection selection = settle(cameraFromPose({0.3, 0.2, 5000, 1, -0.5}, kMoon, 0.9, 1280, 720), moon(), {}, residents);
+  EXPECT_TRUE(std::is_sorted(selection.wanted.begin(), selection.wanted.end(), [](const WantedTile& a, const WantedTile& b) {
+    return a.path.level() < b.path.level() ||
+           (a.path.level() == b.path.level() && a.screenErrorPixels > b.screenErrorPixels);
+  }));
+  EXPECT_EQ(selection.wanted.front().path.level(), 0);
+}
+
+TEST(TileSelection, SaysThatAVisibleFaceIsMissing) {
+  const Camera camera = cameraFromPose({kPi / 4, 0, 3e6, 0, -kPi / 2}, kMoon, 0.9, 1280, 720);  // over the edge of faces 0 and 2
+  Residents residents;
+  EXPECT_TRUE(selectTiles(camera, moon(), residents.lookup(), {}).rootsMissing);
+  EXPECT_TRUE(selectTiles(camera, moon(), residents.lookup(), {}).draw.empty());
+  residents.add(FacePath::wholeFace(Scheme::Cube, 0));
+  const TileSelection half = selectTiles(camera, moon(), residents.lookup(), {});
+  EXPECT_TRUE(half.rootsMissing);
+  EXPECT_FALSE(half.complete);
+  EXPECT_EQ(half.draw, std::vector<FacePath>{FacePath::wholeFace(Scheme::Cube, 0)});
+}
+
+TEST(TileSelection, NeverExceedsTheBoundOnTheWork) {
+  for (const int bound : {6, 50, 300}) {
+    const SelectionSettings settings{.errorPixels = 0.05, .maxTiles = bound};
+    Residents residents;
+    const TileSelection selection = settle(cameraFromPose({0.3, 0.2, 50'000, 1, -0.5}, kMoon, 0.9, 1280, 720), moon(), settings, residents);
+    EXPECT_LE(selection.wanted.size(), static_cast<std::size_t>(bound));
+    EXPECT_TRUE(selection.complete);
+    expectDisjointAndBalanced(selection.draw);
+  }
+}
+
+TEST(TileSelection, LooksAtTheSkyAndWantsNothing) {
+  const Camera camera = cameraFromPose({0, 0, 100'000, 0, kPi / 2}, kMoon, 0.9, 1280, 720);
+  EXPECT_TRUE(selectTiles(camera, moon(), {}, {}).wanted.empty());
+}
+
+TEST(TileSelection, WantsNothingBeyondTheHorizon) {
+  const Camera camera = cameraFromPose({0, 0, 10'000, 0, 0}, kMoon, 0.9, 1280, 720);
+  Residents with, without;
+  const std::size_t culled = settle(camera, moon(), {}, with).wanted.size();
+  const std::size_t all = settle(camera, moon(), {.horizonCulling = false}, without).wanted.size();
+  EXPECT_LT(culled, all);
+  const glm::dvec3 farSide(-1, 0, 0);
+  for (const WantedTile& tile : settle(camera, moon(), {}, with).wanted) {
+    if (tile.path.level() > 2) {
+      EXPECT_NE(tile.path.face(), cubeFaceCoordinates(farSide).face);
+    }
+  }
+}
+
+TEST(TileSelection, StandsAnywhere) {
+  // A face's corner, the planet's centre, very far out, below ground, nowhere.
+  const double corner = std::asin(1 / std::sqrt(3.0));
+  for (const ViewPose& pose : {ViewPose{kPi / 4, corner, 10, 0, -0.3}, ViewPose{0, 0, -kMoon, 0, 0}, ViewPose{0, 0, 1e15, 0, -kPi / 2},
+                               ViewPose{1, 1, -5000, 0, 0}, ViewPose{0, kPi / 2, 1, 0, -kPi / 2}}) {
+    Residents residents;
+    const TileSelection selection = settle(cameraFromPose(pose, kMoon, 0.9, 1280, 720), moon(), {}, residents);
+    EXPECT_TRUE(selection.complete);
+    expectDisjointAndBalanced(selection.draw);
+  }
+  Camera nowhere;
+  nowhere.positionBody = glm::dvec3(std::nan(""));
+  EXPECT_TRUE(selectTiles(nowhere, moon(), {}, {}).wanted.empty());
+}
+
+}  // namespace
+}  // namespace terrane

@@ -1,0 +1,262 @@
+#include "server/build/tile_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "common/tiling/cube_sphere.h"
+#include "common/tiling/lattice.h"
+#include "proto/gltf_tile.h"
+
+namespace terrane {
+namespace {
+
+constexpr double kMoon = 1'737'400.0;
+constexpr unsigned kSeed = 64;
+constexpr std::size_t kSide = 65;
+
+Body body(FieldKind field, double radius = kMoon) {
+  Body made;
+  made.name = "moon";
+  made.radiusMeters = radius;
+  made.field = field;
+  made.fieldParameters = defaultValues(fieldRow(field).parameters);
+  made.seed = 1;
+  return made;
+}
+
+const TileBuilder& moon() {
+  static const TileBuilder builder(body(FieldKind::Lunar), {}, bestSimdPath());
+  return builder;
+}
+
+FacePath randomTile(std::mt19937_64& random, int level) {
+  const std::uint64_t last = (std::uint64_t{1} << level) - 1;
+  return FacePath::cubeTile(static_cast<int>(random() % 6), level, static_cast<std::uint32_t>(random() & last),
+                            static_cast<std::uint32_t>(random() & last));
+}
+
+Tile mesh(const TileBuilder& builder, const FacePath& path) {
+  Result<Tile> tile = builder.buildMesh(path);
+  EXPECT_TRUE(tile.has_value()) << (tile.has_error() ? tile.error().text() : "");
+  return tile.has_value() ? std::move(*tile) : Tile{};
+}
+
+glm::dvec3 position(const Tile& tile, std::size_t vertex) {
+  const std::uint16_t* offset = tile.mesh.offsets.data() + 3 * vertex;
+  return latticePosition(tile.metadata.origin + LatticePoint(offset[0], offset[1], offset[2]), tile.metadata.stepExponent);
+}
+
+double heightAt(const Tile& tile, std::size_t i, std::size_t j) { return glm::length(position(tile, j * kSide + i)) - kMoon; }
+
+TEST(TileBuilder, PutsVerticesWhereTheFieldSaysWithinHalfAStep) {
+  std::mt19937_64 random(kSeed);
+  const auto field = makeHeightField(body(FieldKind::Lunar), bestSimdPath());
+  SurfaceSamples samples;
+  for (int level = 0; level <= moon().info().selection.maxLevel; level += 3) {
+    const FacePath path = randomTile(random, level);
+    const Tile tile = mesh(moon(), path);
+    const double step = stepMeters(tile.metadata.stepExponent);
+    for (int k = 0; k < 20; ++k) {
+      const std::size_t i = random() % kSide, j = random() % kSide;
+      const glm::dvec3 d = cubeGridDirection(path.face(), level + 6, std::uint64_t{path.column()} * 64 + i, std::uint64_t{path.row()} * 64 + j);
+      // One vertex on its own gives the height that it has in the tile.
+      field->evaluate({&d.x, &d.y, &d.z, 1, 1}, 2 * nominalTileWidthMeters(kMoon, level) / 64, samples);
+      const glm::dvec3 off = (position(tile, j * kSide + i) - d * (kMoon + samples.heightMeters[0])) / step;
+      EXPECT_LE(std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}), 0.5 + 1e-6) << path.text();
+    }
+  }
+}
+
+TEST(TileBuilder, GivesTheBareSphereItsOwnDirectionsAsNormals) {
+  const TileBuilder builder(body(FieldKind::Sphere), {}, bestSimdPath());
+  for (const char* text : {"cube/0", "cube/3/0312", "cube/5/33333"}) {
+    const Tile tile = mesh(builder, *FacePath::parse(text));
+    EXPECT_TRUE(tile.mesh.colors.empty());
+    for (std::size_t vertex = 0; vertex < kSide * kSide; ++vertex) {
+      const glm::dvec3 up = glm::normalize(position(tile, vertex));
+      const float* n = tile.mesh.normals.data() + 3 * vertex;
+      EXPECT_NEAR(glm::length(glm::dvec3(n[0], n[1], n[2]) - up), 0.0, 1e-4);
+    }
+  }
+}
+
+TEST(TileBuilder, NormalsStandOnTheSurface) {
+  std::mt19937_64 random(kSeed);
+  for (int level = 2; level <= moon().info().selection.maxLevel; level += 4) {
+    const Tile tile = mesh(moon(), randomTile(random, level));
+    // Mean angle to the normals of the mesh itself: it is sampled at two cells a wavelength, so single ones may differ much.
+    double sum = 0, control = 0;
+    for (std::size_t j = 1; j + 1 < kSide; ++j) {
+      for (std::size_t i = 1; i + 1 < kSide; ++i) {
+        const glm::dvec3 alongU = position(tile, j * kSide + i + 1) - position(tile, j * kSide + i - 1);
+        const glm::dvec3 alongV = position(tile, (j + 1) * kSide + i) - position(tile, (j - 1) * kSide + i);
+        const glm::dvec3 fromMesh = glm::normalize(glm::cross(alongU, alongV));
+        const float* n = tile.mesh.normals.data() + 3 * (j * kSide + i);
+        EXPECT_NEAR(std::hypot(n[0], n[1], n[2]), 1.0f, 1e-6f);
+        sum += glm::length(glm::dvec3(n[0], n[1], n[2]) - fromMesh);
+        control += glm::length(glm::normalize(position(tile, j * kSide + i)) - fromMesh);
+      }
+    }
+    EXPECT_LT(sum, 0.7 * control) << "level " << level << ": no better than the sphere's normals";
+  }
+}
+
+TEST(TileBuilder, HangsSkirtsTowardsTheCentre) {
+  const Tile tile = mesh(moon(), *FacePath::parse("cube/1/2103"));
+  const double step = stepMeters(tile.metadata.stepExponent);
+  for (std::size_t k = 0; k < kSide; ++k) {
+    const glm::dvec3 edge = position(tile, k), bottom = position(tile, kSide * kSide + k);  // the VMin edge
+    EXPECT_NEAR(glm::length(edge) - glm::length(bottom), static_cast<double>(tile.metadata.skirtMeters), 2 * step);
+    EXPECT_NEAR(glm::length(glm::normalize(edge) - glm::normalize(bottom)), 0.0, 2 * step / kMoon);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(tile.mesh.normals[3 * k + axis], tile.mesh.normals[3 * (kSide * kSide + k) + axis]);
+      EXPECT_EQ(tile.mesh.colors[3 * k + axis], tile.mesh.colors[3 * (kSide * kSide + k) + axis]);
+    }
+  }
+}
+
+TEST(TileBuilder, FitsEveryTileIntoSixteenBits) {
+  std::mt19937_64 random(kSeed);
+  RecordProperty("seed", kSeed);
+  std::uint16_t largest = 0;
+  for (int level = 0; level <= moon().info().selection.maxLevel; ++level) {
+    for (int k = 0; k < 4; ++k) {
+      const Tile tile = mesh(moon(), level == 0 ? FacePath::wholeFace(Scheme::Cube, k) : randomTile(random, level));
+      largest = std::max(largest, *std::max_element(tile.mesh.offsets.begin(), tile.mesh.offsets.end()));
+    }
+  }
+  std::printf("largest offset %u of %d\n", largest, kTileOffsetMax);
+}
+
+/// How far outside a tile's volumes its own or a descendant's vertex lies, in metres; the lattice's rounding is inside them.
+void expectInside(const Tile& descendant, const Tile& tile) {
+  const TileBounds bounds = tileBounds(tile.metadata.path, kMoon, tile.metadata.subtreeHeights,
+                                       moon().info().selection.occluderRadiusMeters);
+  const HeightRange& range = tile.metadata.subtreeHeights;
+  const double rounding = stepMeters(descendant.metadata.stepExponent);
+  for (std::size_t vertex = 0; vertex < descendant.mesh.vertexCount(); ++vertex) {
+    const glm::dvec3 p = position(descendant, vertex);
+    const double height = glm::length(p) - kMoon;
+    ASSERT_GE(height, range.minMeters - rounding) << descendant.metadata.path.text() << " below " << tile.metadata.path.text();
+    ASSERT_LE(height, range.maxMeters + rounding) << descendant.metadata.path.text() << " above " << tile.metadata.path.text();
+    ASSERT_LE(glm::length(p - bounds.sphere.center), bounds.sphere.radiusMeters) << descendant.metadata.path.text();
+    for (const glm::dvec3& axis : bounds.box.halfAxes)
+      ASSERT_LE(std::abs(glm::dot(p - bounds.box.center, axis)), glm::dot(axis, axis)) << descendant.metadata.path.text();
+  }
+}
+
+TEST(TileBuilder, NoDescendantSticksOutOfATilesVolumes) {
+  std::mt19937_64 random(kSeed);
+  RecordProperty("seed", kSeed);
+  for (int walk = 0; walk < 3; ++walk) {
+    FacePath path = FacePath::wholeFace(Scheme::Cube, static_cast<int>(random() % 6));
+    std::vector<Tile> above{mesh(moon(), path)};
+    while (path.level() < moon().info().selection.maxLevel) {
+      path = path.child(static_cast<int>(random() % 4));
+      above.push_back(mesh(moon(), path));
+      for (const Tile& ancestor : above) expectInside(above.back(), ancestor);
+    }
+  }
+}
+
+TEST(TileBuilder, SkirtsCoverTheGapToANeighbourOneLevelCoarser) {
+  std::mt19937_64 random(kSeed);
+  RecordProperty("seed", kSeed);
+  double largestShare = 0, steepest = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int level = 1 + round % moon().info().selection.maxLevel;
+    const FacePath path = randomTile(random, level);
+    const Tile fine = mesh(moon(), path), coarse = mesh(moon(), path.parent());
+    // The parent's grid line through this tile's VMin or VMax border stands for a coarser neighbour's edge: the same vertices.
+    const std::size_t firstColumn = (path.column() & 1u) * 32, fineRow = round % 2 == 0 ? 0 : 64;
+    const std::size_t coarseRow = (path.row() & 1u) * 32 + fineRow / 2;
+    const double cell = nominalTileWidthMeters(kMoon, level) / 64;
+    for (std::size_t i = 0; i < kSide; ++i) {
+      const glm::dvec3 p = position(fine, fineRow * kSide + i);
+      const glm::dvec3 a = position(coarse, coarseRow * kSide + firstColumn + i / 2);
+      const glm::dvec3 b = position(coarse, coarseRow * kSide + firstColumn + (i + 1) / 2);
+      const double gap = std::abs(glm::length(p) - glm::length(0.5 * (a + b)));
+      largestShare = std::max(largestShare, gap / static_cast<double>(std::min(fine.metadata.skirtMeters, coarse.metadata.skirtMeters)));
+      if (i > 0) steepest = std::max(steepest, std::abs(heightAt(fine, i, fineRow) - heightAt(fine, i - 1, fineRow)) / cell);
+    }
+  }
+  std::printf("widest gap: %.3f of its skirt; steepest edge %.2f\n", largestShare, steepest);
+  EXPECT_LE(largestShare, 1.0);
+  EXPECT_LE(steepest, 2.0);  // what the skirt's bound takes for granted
+}
+
+TEST(TileBuilder, GeometricErrorFallsStrictlyAndHoldsForTheFinerLevels) {
+  const std::vector<double>& errors = moon().info().selection.geometricErrorMeters;
+  ASSERT_EQ(errors.size(), static_cast<std::size_t>(moon().info().selection.maxLevel) + 1);
+  for (std::size_t level = 1; level < errors.size(); ++level) EXPECT_LT(errors[level], errors[level - 1]);
+  EXPECT_GT(errors.back(), 0);
+
+  // Against the finest surface, at the middles of cells, where a mesh is worst.
+  std::mt19937_64 random(kSeed);
+  const auto field = makeHeightField(body(FieldKind::Lunar), bestSimdPath());
+  SurfaceSamples samples;
+  for (int level = 0; level + 1 < static_cast<int>(errors.size()); level += 2) {
+    const FacePath path = randomTile(random, level);
+    const Tile tile = mesh(moon(), path);
+    const double error = errors[static_cast<std::size_t>(level)];
+    double largest = 0;
+    int beyond = 0;
+    constexpr int kSamples = 400;
+    for (int k = 0; k < kSamples; ++k) {
+      const std::size_t i = random() % 64, j = random() % 64;
+      const glm::dvec3 onMesh = 0.5 * (position(tile, j * kSide + i) + position(tile, (j + 1) * kSide + i + 1));
+      const glm::dvec3 d = glm::normalize(onMesh);
+      field->evaluate({&d.x, &d.y, &d.z, 1, 1}, 0.0, samples);
+      const double off = std::abs(glm::length(onMesh) - kMoon - samples.heightMeters[0]);
+      largest = std::max(largest, off / error);
+      beyond += off > error;
+    }
+    std::printf("level %2d: off by at most %.2f of the geometric error, %d of %d beyond\n", level, largest, beyond, kSamples);
+    EXPECT_LE(beyond, kSamples / 50);
+  }
+}
+
+TEST(TileBuilder, RefusesWhatTheBodyDoesNotHave) {
+  const FacePath tooDeep = FacePath::cubeTile(0, moon().info().selection.maxLevel + 1, 0, 0);
+  const Result<Tile> deep = moon().buildMesh(tooDeep);
+  ASSERT_TRUE(deep.has_error());
+  EXPECT_EQ(deep.error().kind, ErrorKind::InvalidArgument);
+  EXPECT_EQ(deep.error().field, "digits");
+  const Result<BuiltTile> ico = moon().build(FacePath::wholeFace(Scheme::Ico, 3));
+  ASSERT_TRUE(ico.has_error());
+  EXPECT_EQ(ico.error().field, "scheme");
+}
+
+TEST(TileBuilder, EncodesTheMeshThatItBuilt) {
+  const FacePath path = *FacePath::parse("cube/4/0123012");
+  const Result<BuiltTile> built = moon().build(path);
+  ASSERT_TRUE(built.has_value());
+  const Result<Tile> decoded = decodeTile(built->glb);
+  ASSERT_TRUE(decoded.has_value()) << decoded.error().text();
+  const Tile tile = mesh(moon(), path);
+  EXPECT_EQ(decoded->metadata.path, path);
+  EXPECT_TRUE(decoded->metadata.origin == tile.metadata.origin);
+  EXPECT_EQ(decoded->metadata.subtreeHeights.maxMeters, tile.metadata.subtreeHeights.maxMeters);
+  ASSERT_EQ(decoded->mesh.vertexCount(), tile.mesh.vertexCount());
+  for (std::size_t vertex = 0; vertex < decoded->mesh.vertexCount(); ++vertex)
+    EXPECT_TRUE(position(*decoded, vertex) == position(tile, decoded->mesh.gridIndices[vertex]));
+}
+
+TEST(TileBuilder, NamesTheBodyForViewers) {
+  const BodyInfo& info = moon().info();
+  EXPECT_EQ(info.name, "moon");
+  EXPECT_EQ(info.selection.maxLevel, maxLevel(kMoon));
+  EXPECT_EQ(info.cellsPerEdge, 64);
+  EXPECT_LT(info.selection.occluderRadiusMeters, kMoon + info.selection.heights.maxMeters);
+  Body other = body(FieldKind::Lunar);
+  other.seed = 2;
+  EXPECT_NE(TileBuilder(other, {}, bestSimdPath()).info().revision, info.revision);
+}
+
+}  // namespace
+}  // namespace terrane
