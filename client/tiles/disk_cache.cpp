@@ -68,7 +68,7 @@ class Statement {
     return *this;
   }
   bool step() {
-    code_ = statement_ ? sqlite3_step(statement_.get()) : SQLITE_MISUSE;
+    if (statement_) code_ = sqlite3_step(statement_.get());
     return code_ == SQLITE_ROW;
   }
   std::int64_t integerColumn(int column) const { return sqlite3_column_int64(statement_.get(), column); }

@@ -192,7 +192,7 @@ struct TileStream::State {
   }
 
   bool inGrace(const Entry& entry, Clock::time_point now) const {
-    return call - entry.wantedCall < kGraceCalls && now - entry.wantedTime < kGraceTime;
+    return call - entry.wantedCall < kGraceCalls && now - entry.wantedTime < options.graceTime;
   }
 
   void dropUnwanted(Clock::time_point now) {

@@ -1,15 +1,18 @@
 #pragma once
-// Everything between "this tile is wanted" and "here is its mesh": requests over a few kept connections, the disk cache, decoding on
-// worker threads, residency and memory budgets. The GL thread calls it once a frame and never waits in it.
+// Everything between "this tile is wanted" and "here is its mesh": requests over a few kept connections, the disk
+// cache, decoding on worker threads, residency and memory budgets. The GL thread calls it once a frame and never waits
+// in it.
 //
 //   absent -> queued -> fetching -> decoding -> ready (takeDecoded) -> resident (uploaded) -> evicted = absent
 //                \-> failed (back-off, then queued again)
 //
-// Hysteresis lives here, so that a camera that hovers at a threshold costs nothing: what is no longer wanted goes on loading, behind
-// all that is wanted, for kGraceCalls calls of want() or kGraceTime, whichever ends first; what was wanted that recently is not evicted.
+// Hysteresis lives here, so that a camera that hovers at a threshold costs nothing: what is no longer wanted goes on
+// loading, behind all that is wanted, for kGraceCalls calls of want() or graceTime, whichever ends first; what was
+// wanted that recently is not evicted.
 //
-// When the server says that the revision is gone, scene() becomes another scene and every tile is asked for again as it is wanted; the
-// old ones stay resident and drawn until their successors are. Without a server the disk cache's scene and tiles are used.
+// When the server says that the revision is gone, scene() becomes another scene and every tile is asked for again as it
+// is wanted; the old ones stay resident and drawn until their successors are. Without a server the disk cache's scene
+// and tiles are used.
 //
 // All members are for one thread (the GL thread), except where they say otherwise.
 
@@ -29,30 +32,32 @@
 namespace terrane {
 
 struct StreamOptions {
-  std::string serverUrl;              ///< http://host:port
+  std::string serverUrl;  ///< http://host:port
   int connections = 6;
   int decodeThreads = 1;
-  std::size_t residentBudgetBytes = 128u << 20;  ///< tiles on the GPU and their CPU copies; what is drawn is never evicted
-  std::string cacheFile;              ///< SQLite file; empty: no disk cache
+  /// Tiles on the GPU and their CPU copies; what is drawn is never evicted.
+  std::size_t residentBudgetBytes = 128u << 20;
+  std::string cacheFile;  ///< SQLite file; empty: no disk cache
   std::size_t cacheBudgetBytes = 512u << 20;
   std::chrono::milliseconds requestTimeout{30'000};
-  std::chrono::milliseconds slowAfter{2'000};    ///< a request that waits longer makes the link Slow
-  std::chrono::milliseconds firstBackoff{250}, longestBackoff{15'000};  ///< pauses between attempts double from one to the other
+  std::chrono::milliseconds graceTime{500};
+  std::chrono::milliseconds slowAfter{2'000};  ///< a request that waits longer makes the link Slow
+  /// Pauses between attempts double from the one to the other.
+  std::chrono::milliseconds firstBackoff{250}, longestBackoff{15'000};
 };
 
-/// How long a tile that is no longer wanted is treated as if it were: calls of want(), or time.
+/// Calls of want() for which a tile that is no longer wanted is treated as if it were (or StreamOptions::graceTime).
 inline constexpr std::uint64_t kGraceCalls = 30;
-inline constexpr std::chrono::milliseconds kGraceTime{500};
 
 enum class LinkState : std::uint8_t { Connecting, Online, Slow, Offline };
 
 struct StreamStatus {
   LinkState link = LinkState::Connecting;
-  std::string message;   ///< one line for the HUD, e.g. "server does not answer: retry in 4 s"; empty when all is well
+  std::string message;  ///< one line for the HUD, e.g. "server does not answer: retry in 4 s"; empty when all is well
   std::size_t queued = 0, fetching = 0, decoding = 0, ready = 0, resident = 0, failed = 0;
   std::size_t residentBytes = 0;
   std::uint64_t requests = 0, bytesReceived = 0, cacheHits = 0, cancelled = 0, evicted = 0;
-  double decodeMs = 0;   ///< summed over workers
+  double decodeMs = 0;  ///< summed over workers
 };
 
 /// A decoded tile on its way to the GPU.
@@ -60,42 +65,45 @@ using TilePtr = std::shared_ptr<const Tile>;
 
 class TileStream {
  public:
-  /// Starts the threads; does not wait for the server. wake is called from any thread when something arrived (an idle viewer sleeps).
-  /// Errors: InvalidArgument naming "--server", Io naming the cache file.
+  /// Starts the threads; does not wait for the server. wake is called from any thread when something arrived (an idle
+  /// viewer sleeps). Errors: InvalidArgument naming "--server", Io naming the cache file.
   static Result<std::unique_ptr<TileStream>> open(StreamOptions options, std::function<void()> wake);
   ~TileStream();
 
-  /// Asks for scene.json until it is there (again when the server says that the revision is gone). Null before. A new scene is a new
-  /// object; the old ones live as long as the stream.
+  /// Asks for scene.json until it is there (again when the server says that the revision is gone). Null before. A new
+  /// scene is a new object; the old ones live as long as the stream.
   const SceneInfo* scene() const;
-  /// Chooses the body whose tiles are wanted. Another body than before: nothing is resident any more (clear the renderer).
-  /// Precondition: scene() is not null, index in range.
+  /// Chooses the body whose tiles are wanted. Another body than before: nothing is resident any more (clear the
+  /// renderer). Precondition: scene() is not null, index in range.
   void selectBody(std::size_t index);
 
   /// Once a frame: what is wanted now, coarsest first. Queued and running requests for anything else are cancelled.
   void want(const std::vector<WantedTile>& wanted);
   /// Decoded tiles to upload now, at most about maxBytes of them (at least one if any is ready), coarsest first.
   std::vector<TilePtr> takeDecoded(std::size_t maxBytes);
-  /// The tile is on the GPU and may be drawn; if it was resident before, it takes that one's place. gpuBytes count towards the budget,
-  /// with the few bytes a vertex that stay in main memory for groundBelow. The rest of the mesh is the caller's to keep or drop.
+  /// The tile is on the GPU and may be drawn; if it was resident before, it takes that one's place. gpuBytes count
+  /// towards the budget, with the few bytes a vertex that stay in main memory for groundBelow. The rest of the mesh is
+  /// the caller's to keep or drop.
   void markResident(const TilePtr& tile, std::size_t gpuBytes);
-  /// Drops what is over budget, least recently wanted first; never what is in draw, what was wanted just now or within the grace, nor
-  /// an ancestor of what stays. So a view that needs more than the budget gets it. The caller frees the GL objects.
+  /// Drops what is over budget, least recently wanted first; never what is in draw, what was wanted just now or within
+  /// the grace, nor an ancestor of what stays. So a view that needs more than the budget gets it. The caller frees the
+  /// GL objects.
   std::vector<FacePath> evict(const std::vector<FacePath>& draw);
 
   const ResidentTile* resident(const FacePath& path) const;
   /// Null if it is not resident, or if nobody else keeps the mesh.
   TilePtr tile(const FacePath& path) const;
 
-  /// Height of the finest resident tile's triangle under a direction, metres above the reference sphere; empty if there is none.
+  /// Height of the finest resident tile's triangle under a direction, metres above the reference sphere; empty if there
+  /// is none.
   struct Ground {
     double heightMeters = 0;
     int level = 0;
   };
   std::optional<Ground> groundBelow(const glm::dvec3& directionBody) const;
 
-  /// Nothing is queued, fetching, decoding or ready, and nothing waits for a retry. (A viewer that lives on its disk cache is idle although
-  /// it goes on trying to reach the server.)
+  /// Nothing is queued, fetching, decoding or ready, and nothing waits for a retry. (A viewer that lives on its disk
+  /// cache is idle although it goes on trying to reach the server.)
   bool idle() const;
   StreamStatus status() const;
 

@@ -67,12 +67,22 @@ constexpr DoubleFloat twoSum(float a, float b) noexcept {
   return DoubleFloat{s, (a - aPart) + (b - bPart)};
 }
 
-/// As twoSum with 3 operations. Precondition: |a| >= |b| or a = 0 (Dekker); the other way round it loses up to all of
-/// b's rounding.
-constexpr DoubleFloat fastTwoSum(float a, float b) noexcept {
-  assert(a == 0 || !(double_float_detail::magnitude(a) < double_float_detail::magnitude(b)));
+namespace double_float_detail {
+
+/// As twoSum with 3 operations, for callers that have proven it exact: |a| >= |b|, or a = 0, or at least a multiple of
+/// ulp(b), which is all that [JMP17] can show (and need) where high words cancel.
+constexpr DoubleFloat sumOfOrdered(float a, float b) noexcept {
   const float s = a + b;
   return DoubleFloat{s, b - (s - a)};
+}
+
+}  // namespace double_float_detail
+
+/// As twoSum with 3 operations. Precondition: |a| >= |b| or a = 0 (Dekker); the other way round it may lose all of a's
+/// last bits.
+constexpr DoubleFloat fastTwoSum(float a, float b) noexcept {
+  assert(a == 0 || !(double_float_detail::magnitude(a) < double_float_detail::magnitude(b)));
+  return double_float_detail::sumOfOrdered(a, b);
 }
 
 /// The exact product by Dekker's split, for machines without a fused multiply-add: and, since its operations are a
@@ -97,7 +107,7 @@ namespace double_float_detail {
 constexpr DoubleFloat finish(float plain, float hi, float lo) noexcept {
   if (!isFinite(plain)) return DoubleFloat{plain, 0.0f};
   if (hi == 0 && lo == 0) return DoubleFloat{plain == 0 ? plain : 0.0f, 0.0f};
-  const DoubleFloat sum = fastTwoSum(hi, lo);
+  const DoubleFloat sum = sumOfOrdered(hi, lo);
   return isFinite(sum.hi) ? sum : DoubleFloat{sum.hi, 0.0f};
 }
 
@@ -136,7 +146,7 @@ constexpr DoubleFloat add(const DoubleFloat& x, const DoubleFloat& y) noexcept {
   const DoubleFloat s = twoSum(x.hi, y.hi);
   if (!double_float_detail::isFinite(s.hi)) return DoubleFloat{s.hi, 0.0f};
   const DoubleFloat t = twoSum(x.lo, y.lo);
-  const DoubleFloat v = fastTwoSum(s.hi, s.lo + t.hi);
+  const DoubleFloat v = double_float_detail::sumOfOrdered(s.hi, s.lo + t.hi);
   return double_float_detail::finish(s.hi, v.hi, t.lo + v.lo);
 }
 inline constexpr double kAddBound = 3.0 + 13.0 * kFloatUnit;
@@ -149,7 +159,7 @@ constexpr float subtractAndDemote(const DoubleFloat& x, const DoubleFloat& y) no
   const DoubleFloat s = twoSum(x.hi, -y.hi);
   if (!double_float_detail::isFinite(s.hi)) return s.hi;
   const DoubleFloat t = twoSum(x.lo, -y.lo);
-  const DoubleFloat v = fastTwoSum(s.hi, s.lo + t.hi);
+  const DoubleFloat v = double_float_detail::sumOfOrdered(s.hi, s.lo + t.hi);
   const float difference = v.hi + (t.lo + v.lo);
   return difference == 0 && s.hi == 0 ? s.hi : difference;  // the sign of 0 as a float has it
 }
@@ -161,7 +171,7 @@ constexpr DoubleFloat multiply(const DoubleFloat& x, float y) noexcept {
   const float plain = x.hi * y;
   if (!double_float_detail::isFinite(plain) || plain == 0) return DoubleFloat{plain, 0.0f};
   const DoubleFloat c = twoProd(x.hi, y);
-  const DoubleFloat t = fastTwoSum(c.hi, x.lo * y);
+  const DoubleFloat t = double_float_detail::sumOfOrdered(c.hi, x.lo * y);
   return double_float_detail::finish(plain, t.hi, t.lo + c.lo);
 }
 inline constexpr double kMultiplyFloatBound = 1.5 + 4.0 * kFloatUnit;

@@ -104,7 +104,7 @@ Feature makeRock(const double direction[3], double bodyRadius, double diameter, 
   f.radius = 0.5 * diameter;
   f.reach = f.heightReach = f.radius / (1 - kRockLobes) * (1 + 1e-5);
   f.floorBlend = f.rimBlend = 1;
-  f.peak = f.radius * (0.35 + 0.55 * hashUnit(mixHash(hash ^ 5)));
+  f.peak = f.radius * (0.35 + (kRockHeight - 0.35) * hashUnit(mixHash(hash ^ 5)));
   f.brightness = static_cast<float>(0.01 + 0.035 * hashUnit(mixHash(hash ^ 6)));
   f.inverseHaloSquared = 1.0f;
   return f;
@@ -222,7 +222,7 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
   out = makeCrater(d, bodyRadius, diameter, wear, hash);
   if (layer.stage == FeatureStage::YoungCrater && wear < 0.12) {
     const double youth = 1 - wear / 0.12;
-    out.brightness = static_cast<float>(0.09 * youth);
+    out.brightness = static_cast<float>((layer.exponent >= 4 ? 0.09 : 0.03) * youth);
     out.rays = static_cast<float>(0.6 * youth);
     out.reach = kHaloRadii * out.radius * (1 + 1e-5);
     out.inverseHaloSquared = static_cast<float>(1 / (kHaloRadii * kHaloRadii));

@@ -39,6 +39,8 @@ struct FeatureLayer {
 /// The outline's lobes stay within 1 +- this.
 inline constexpr double kCraterLobes = 0.10;
 inline constexpr double kRockLobes = 0.24;
+/// A rock is at most this many radii high.
+inline constexpr double kRockHeight = 0.9;
 /// Halos of the freshest craters end here, in crater radii.
 inline constexpr double kHaloRadii = 4.5;
 

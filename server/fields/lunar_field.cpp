@@ -114,9 +114,9 @@ LunarField::LunarField(const Body& body, SimdPath simd)
   base_.lavaTop = (-2050 + 4500 * mareFraction_) * scale;
   base_.lavaFloor = base_.lavaTop - (mareFraction_ > 0 ? 6000 : 50000) * scale;
   base_.lavaBlend = 220 * scale;
-  base_.reliefLow = -8500 * scale;
-  base_.reliefHigh = 8500 * scale;
-  base_.reliefBlend = 3500 * scale;
+  base_.clampLow = -8500 * scale;
+  base_.clampHigh = 8500 * scale;
+  base_.clampBlend = 3500 * scale;
   base_.mareSmoothing = 0.6;
   base_.inverseReliefAmplitude = 1 / (3000 * scale);
   base_.basins = basins_.data();
@@ -125,6 +125,7 @@ LunarField::LunarField(const Body& body, SimdPath simd)
   base_.patchCount = patches_.size();
   base_.rays = rays_.data();
   base_.rayCount = rays_.size();
+  bounds_ = LunarBounds(base_, groups_, layers_, landmarkCraters_);
 }
 
 void LunarField::makeNoise() {
@@ -324,9 +325,16 @@ void LunarField::evaluate(const SampleBatch& batch, double minWavelengthMeters, 
   }
 }
 
-double LunarField::omittedAmplitudeMeters(double minWavelengthMeters, double) const noexcept { return 0.5 * minWavelengthMeters; }
-double LunarField::interpolationErrorMeters(double, double spacingMeters) const noexcept { return 0.5 * spacingMeters; }
-HeightRange LunarField::heightRange() const noexcept { return {-14000, 14000}; }
+double LunarField::omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept {
+  return bounds_.omittedAmplitudeMeters(minWavelengthMeters, finestWavelengthMeters);
+}
+
+double LunarField::interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept {
+  return bounds_.interpolationErrorMeters(minWavelengthMeters, spacingMeters);
+}
+
+HeightRange LunarField::heightRange() const noexcept { return bounds_.heightRange(); }
+
 std::string LunarField::identity() const {
   return fmt::format("lunar 1 seed={} mare={:a} craters={:a} roughness={:a} rocks={:a} finest={:a}", seed_, mareFraction_,
                      craterDensity_, roughness_, rockDensity_, finestDetail_);

@@ -1,9 +1,10 @@
 #pragma once
 // The Moon as a height field. Body frame, metres; immutable and thread-safe. In order of age:
-//   relief   broad noise, the great basins (lunar_landmarks.h), and the old craters of the highlands; clamped to its stated range
+//   relief   broad noise, the great basins (lunar_landmarks.h), and the old craters of the highlands; on top of each other
 //   lava     stands in the basins at its own nearly level height: surface = roundedMax(relief, lava), so that coasts, bays, islands
 //            and half-drowned craters come out by themselves; where lava wins, the ground is dark and smooth
-//   young    craters of all sizes since then (feature_layers.h), down to decimetres, and rocks and stones
+//   young    craters of all sizes since then (feature_layers.h), down to decimetres, and rocks and stones; the sum is clamped to the
+//            stated range by a C2 curve that leaves the middle as it is
 //   regolith fractal noise whose slopes grow slowly towards small scales, rougher in some places than in others
 // Noise below 8 km, craters below 1 km and rocks are computed in float32 relative to their cell or centre, the rest in double: no
 // step above a hundredth of a millimetre anywhere. Every SIMD path, batch and thread gives the same bits.
@@ -13,6 +14,7 @@
 
 #include "server/fields/feature_layers.h"
 #include "server/fields/height_field.h"
+#include "server/fields/lunar_bounds.h"
 #include "server/fields/lunar_program.h"
 
 namespace terrane {
@@ -42,6 +44,7 @@ class LunarField final : public HeightField {
   std::vector<lunar::RaySystem> rays_;
   std::vector<lunar::Feature> landmarkCraters_;  ///< by falling diameter
   std::vector<lunar::FeatureLayer> layers_;
+  lunar::LunarBounds bounds_;
   lunar::Program base_{};  ///< without noise counts and runs
 };
 

@@ -260,7 +260,7 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
     // The halo's rays lean on the last lobe (order 5).
     const float rest = 1.0f - static_cast<float>(square) * inverseHalo;
     const float halo = rest > 0.0f ? rest : 0.0f;
-    b.bright[i] += brightness * (halo * halo) * (1.0f + rays * static_cast<float>(cosine));
+    b.bright[i] += brightness * (halo * halo) * (1.0f + rays * static_cast<float>(cosine * (square / (square + Real(2)))));
   }
 }
 
@@ -326,28 +326,27 @@ void addRays(const RaySystem& system, Block& b) {
 
 // ---------------------------------------------------------------------------------------------------------------- composition
 
-/// Bounds the relief (a C2 clamp, so that no sum of overlapping features leaves the stated range), floods it, adds what is young.
+/// Floods the relief, adds what is young, clamps (C2, so that no sum of overlapping features leaves the stated range), roughens.
 void composeHeight(const Program& p, Block& b) {
   const float smoothing = static_cast<float>(p.mareSmoothing);
   const float lavaRise = static_cast<float>(p.lavaTop - p.lavaFloor);
   const float lavaTint = static_cast<float>(3.0 * p.inverseReliefAmplitude);
   const double inverseRadius = 1.0 / p.radius;
   for (std::size_t i = 0; i < b.count; ++i) {
-    const Blend bottom = roundedMax(b.relief[i], p.reliefLow, p.reliefBlend);
-    const Blend top = roundedMax(-bottom.value, -p.reliefHigh, p.reliefBlend);
-    const double relief = -top.value;
-    const float keep = static_cast<float>(bottom.weight * top.weight);
     const double lava = p.lavaTop - (p.lavaTop - p.lavaFloor) * b.dry[i] + b.lava[i];
-    const Blend surface = roundedMax(relief, lava, p.lavaBlend);
-    const float land = static_cast<float>(surface.weight), mare = 1.0f - land, landKeep = land * keep;
+    const Blend surface = roundedMax(b.relief[i], lava, p.lavaBlend);
+    const Blend bottom = roundedMax(surface.value + b.young[i], p.clampLow, p.clampBlend);
+    const Blend top = roundedMax(-bottom.value, -p.clampHigh, p.clampBlend);
+    const float keep = static_cast<float>(bottom.weight * top.weight);
+    const float land = static_cast<float>(surface.weight), mare = keep * (1.0f - land), landKeep = land * keep;
 
     const float dry = static_cast<float>(b.dry[i]);
     const float calm = 1.0f - smoothing * (1.0f - dry), roughCalm = smoothing * b.rough[i];
-    b.height[i] = surface.value + b.young[i] + static_cast<double>(calm * b.rough[i]);
+    b.height[i] = static_cast<double>(calm * b.rough[i]) - top.value;
 
-    float gx = landKeep * b.reliefX[i] + mare * (b.lavaX[i] - lavaRise * b.dryX[i]) + b.youngX[i];
-    float gy = landKeep * b.reliefY[i] + mare * (b.lavaY[i] - lavaRise * b.dryY[i]) + b.youngY[i];
-    float gz = landKeep * b.reliefZ[i] + mare * (b.lavaZ[i] - lavaRise * b.dryZ[i]) + b.youngZ[i];
+    float gx = landKeep * b.reliefX[i] + mare * (b.lavaX[i] - lavaRise * b.dryX[i]) + keep * b.youngX[i];
+    float gy = landKeep * b.reliefY[i] + mare * (b.lavaY[i] - lavaRise * b.dryY[i]) + keep * b.youngY[i];
+    float gz = landKeep * b.reliefZ[i] + mare * (b.lavaZ[i] - lavaRise * b.dryZ[i]) + keep * b.youngZ[i];
     gx += calm * b.roughX[i] + roughCalm * b.dryX[i];
     gy += calm * b.roughY[i] + roughCalm * b.dryY[i];
     gz += calm * b.roughZ[i] + roughCalm * b.dryZ[i];
@@ -364,7 +363,7 @@ void composeHeight(const Program& p, Block& b) {
     // Reflectance: dark lava, bright highlands, brighter where slopes or youth expose fresh material.
     const float squareSlope = (gx * gx + gy * gy) + gz * gz;
     const float steep = squareSlope / (squareSlope + 0.5f);
-    const float uplift = static_cast<float>(relief * p.inverseReliefAmplitude);
+    const float uplift = static_cast<float>(b.relief[i] * p.inverseReliefAmplitude);
     const float highland = 0.138f + 0.012f * uplift, basalt = 0.055f + 0.004f * static_cast<float>(b.lava[i]) * lavaTint;
     const float mottling = 1.0f + 0.10f * b.mottle[i] + 0.35f * steep;
     const float tint = (basalt + land * (highland - basalt)) * mottling + b.bright[i];

@@ -100,7 +100,7 @@ struct Program {
   const FeatureRun* runs;
   std::size_t runCount;
   double lavaTop, lavaFloor, lavaBlend;
-  double reliefLow, reliefHigh, reliefBlend;
+  double clampLow, clampHigh, clampBlend;
   double mareSmoothing;  ///< regolith in full mare is scaled by 1 - this
   double inverseReliefAmplitude;
 };

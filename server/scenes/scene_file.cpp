@@ -182,7 +182,8 @@ class SceneReader {
     Body body;
     const std::vector<std::string_view> fields = namesOf(fieldTable());
     std::vector<std::string_view> keys{"name", "radius", "schemes", "seed", "field"};
-    keys.insert(keys.end(), fields.begin(), fields.end());
+    for (const FieldRow& row : fieldTable())
+      if (!row.parameters.empty()) keys.push_back(row.name);
     checkKeys(table, path, keys);
     body.name = readName(table, path, "name");
     static constexpr ParameterSpec kRadius{"radius", Quantity::Length, kMinRadiusMeters, kMaxRadiusMeters, 0, ""};
@@ -242,10 +243,9 @@ class SceneReader {
       const toml::node* settings = table.get(name);
       if (!settings) continue;
       if (name != *text)
-        return fail(
-            settings->source(), join(path, name),
-            fmt::format("these are settings of the field \"{}\", but this body's field is \"{}\"; allowed: [body.{}]",
-                        name, *text, *text));
+        return fail(settings->source(), join(path, name),
+                    fmt::format("these are settings of the field \"{}\", but this body's field is \"{}\"; allowed: {}", name, *text,
+                                body.fieldParameters.empty() ? "none" : fmt::format("[body.{}]", *text)));
       readParameters(*settings, join(path, name), fieldRow(*kind).parameters, body.fieldParameters);
     }
   }

@@ -10,6 +10,7 @@
 
 #include "client/gl/window.h"
 #include "client/render/tile_renderer.h"
+#include "common/tiling/cube_sphere.h"
 #include "common/view/camera.h"
 #include "common/view/tile_selection.h"
 #include "server/build/tile_builder.h"

@@ -19,7 +19,7 @@ namespace {
 using Quad = boost::multiprecision::cpp_bin_float_quad;
 using Limits = std::numeric_limits<float>;
 
-constexpr int kSamples = 120000;
+constexpr int kSamples = 60000;
 
 Quad exact(const DoubleFloat& x) { return Quad(x.hi) + Quad(x.lo); }
 

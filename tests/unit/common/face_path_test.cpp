@@ -123,7 +123,7 @@ TEST(FacePath, HostileTextGivesAShortPrintableError) {
   std::cout << "seed " << seed << '\n';
   std::mt19937_64 random(seed);
   const std::string alphabet("cubeico/0123456789./%\0\xff\n\"", 26);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 4000; ++i) {
     std::string text = i % 2 ? "cube/1/" : "";
     const std::size_t length = i % 100 == 0 ? 100000 : random() % 48;
     for (std::size_t k = 0; k < length; ++k) text += alphabet[random() % alphabet.size()];

@@ -48,10 +48,13 @@ Tile mesh(const TileBuilder& builder, const FacePath& path) {
 
 glm::dvec3 position(const Tile& tile, std::size_t vertex) {
   const std::uint16_t* offset = tile.mesh.offsets.data() + 3 * vertex;
-  return latticePosition(tile.metadata.origin + LatticePoint(offset[0], offset[1], offset[2]), tile.metadata.stepExponent);
+  return latticePosition(tile.metadata.origin + LatticePoint(offset[0], offset[1], offset[2]),
+                         tile.metadata.stepExponent);
 }
 
-double heightAt(const Tile& tile, std::size_t i, std::size_t j) { return glm::length(position(tile, j * kSide + i)) - kMoon; }
+double heightAt(const Tile& tile, std::size_t i, std::size_t j) {
+  return glm::length(position(tile, j * kSide + i)) - kMoon;
+}
 
 TEST(TileBuilder, PutsVerticesWhereTheFieldSaysWithinHalfAStep) {
   std::mt19937_64 random(kSeed);
@@ -63,7 +66,8 @@ TEST(TileBuilder, PutsVerticesWhereTheFieldSaysWithinHalfAStep) {
     const double step = stepMeters(tile.metadata.stepExponent);
     for (int k = 0; k < 20; ++k) {
       const std::size_t i = random() % kSide, j = random() % kSide;
-      const glm::dvec3 d = cubeGridDirection(path.face(), level + 6, std::uint64_t{path.column()} * 64 + i, std::uint64_t{path.row()} * 64 + j);
+      const glm::dvec3 d = cubeGridDirection(path.face(), level + 6, std::uint64_t{path.column()} * 64 + i,
+                                             std::uint64_t{path.row()} * 64 + j);
       // One vertex on its own gives the height that it has in the tile.
       field->evaluate({&d.x, &d.y, &d.z, 1, 1}, 2 * nominalTileWidthMeters(kMoon, level) / 64, samples);
       const glm::dvec3 off = (position(tile, j * kSide + i) - d * (kMoon + samples.heightMeters[0])) / step;
@@ -89,7 +93,8 @@ TEST(TileBuilder, NormalsStandOnTheSurface) {
   std::mt19937_64 random(kSeed);
   for (int level = 2; level <= moon().info().selection.maxLevel; level += 4) {
     const Tile tile = mesh(moon(), randomTile(random, level));
-    // Mean angle to the normals of the mesh itself: it is sampled at two cells a wavelength, so single ones may differ much.
+    // Mean angle to the normals of the mesh itself: it is sampled at two cells a wavelength, so single ones may differ
+    // much.
     double sum = 0, control = 0;
     for (std::size_t j = 1; j + 1 < kSide; ++j) {
       for (std::size_t i = 1; i + 1 < kSide; ++i) {
@@ -133,20 +138,24 @@ TEST(TileBuilder, FitsEveryTileIntoSixteenBits) {
   std::printf("largest offset %u of %d\n", largest, kTileOffsetMax);
 }
 
-/// How far outside a tile's volumes its own or a descendant's vertex lies, in metres; the lattice's rounding is inside them.
+/// How far outside a tile's volumes its own or a descendant's vertex lies, in metres; the lattice's rounding is inside
+/// them.
 void expectInside(const Tile& descendant, const Tile& tile) {
-  const TileBounds bounds = tileBounds(tile.metadata.path, kMoon, tile.metadata.subtreeHeights,
-                                       moon().info().selection.occluderRadiusMeters);
+  const TileBounds bounds =
+      tileBounds(tile.metadata.path, kMoon, tile.metadata.subtreeHeights, moon().info().selection.occluderRadiusMeters);
   const HeightRange& range = tile.metadata.subtreeHeights;
   const double rounding = stepMeters(descendant.metadata.stepExponent);
   for (std::size_t vertex = 0; vertex < descendant.mesh.vertexCount(); ++vertex) {
     const glm::dvec3 p = position(descendant, vertex);
     const double height = glm::length(p) - kMoon;
-    ASSERT_GE(height, range.minMeters - rounding) << descendant.metadata.path.text() << " below " << tile.metadata.path.text();
-    ASSERT_LE(height, range.maxMeters + rounding) << descendant.metadata.path.text() << " above " << tile.metadata.path.text();
+    ASSERT_GE(height, range.minMeters - rounding)
+        << descendant.metadata.path.text() << " below " << tile.metadata.path.text();
+    ASSERT_LE(height, range.maxMeters + rounding)
+        << descendant.metadata.path.text() << " above " << tile.metadata.path.text();
     ASSERT_LE(glm::length(p - bounds.sphere.center), bounds.sphere.radiusMeters) << descendant.metadata.path.text();
     for (const glm::dvec3& axis : bounds.box.halfAxes)
-      ASSERT_LE(std::abs(glm::dot(p - bounds.box.center, axis)), glm::dot(axis, axis)) << descendant.metadata.path.text();
+      ASSERT_LE(std::abs(glm::dot(p - bounds.box.center, axis)), glm::dot(axis, axis))
+          << descendant.metadata.path.text();
   }
 }
 
@@ -172,7 +181,8 @@ TEST(TileBuilder, SkirtsCoverTheGapToANeighbourOneLevelCoarser) {
     const int level = 1 + round % moon().info().selection.maxLevel;
     const FacePath path = randomTile(random, level);
     const Tile fine = mesh(moon(), path), coarse = mesh(moon(), path.parent());
-    // The parent's grid line through this tile's VMin or VMax border stands for a coarser neighbour's edge: the same vertices.
+    // The parent's grid line through this tile's VMin or VMax border stands for a coarser neighbour's edge: the same
+    // vertices.
     const std::size_t firstColumn = (path.column() & 1u) * 32, fineRow = round % 2 == 0 ? 0 : 64;
     const std::size_t coarseRow = (path.row() & 1u) * 32 + fineRow / 2;
     const double cell = nominalTileWidthMeters(kMoon, level) / 64;
@@ -181,8 +191,10 @@ TEST(TileBuilder, SkirtsCoverTheGapToANeighbourOneLevelCoarser) {
       const glm::dvec3 a = position(coarse, coarseRow * kSide + firstColumn + i / 2);
       const glm::dvec3 b = position(coarse, coarseRow * kSide + firstColumn + (i + 1) / 2);
       const double gap = std::abs(glm::length(p) - glm::length(0.5 * (a + b)));
-      largestShare = std::max(largestShare, gap / static_cast<double>(std::min(fine.metadata.skirtMeters, coarse.metadata.skirtMeters)));
-      if (i > 0) steepest = std::max(steepest, std::abs(heightAt(fine, i, fineRow) - heightAt(fine, i - 1, fineRow)) / cell);
+      largestShare = std::max(
+          largestShare, gap / static_cast<double>(std::min(fine.metadata.skirtMeters, coarse.metadata.skirtMeters)));
+      if (i > 0)
+        steepest = std::max(steepest, std::abs(heightAt(fine, i, fineRow) - heightAt(fine, i - 1, fineRow)) / cell);
     }
   }
   std::printf("widest gap: %.3f of its skirt; steepest edge %.2f\n", largestShare, steepest);
@@ -216,7 +228,8 @@ TEST(TileBuilder, GeometricErrorFallsStrictlyAndHoldsForTheFinerLevels) {
       largest = std::max(largest, off / error);
       beyond += off > error;
     }
-    std::printf("level %2d: off by at most %.2f of the geometric error, %d of %d beyond\n", level, largest, beyond, kSamples);
+    std::printf("level %2d: off by at most %.2f of the geometric error, %d of %d beyond\n", level, largest, beyond,
+                kSamples);
     EXPECT_LE(beyond, kSamples / 50);
   }
 }

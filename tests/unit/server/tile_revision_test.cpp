@@ -26,7 +26,8 @@ TEST(TileRevision, ChangesWithAllThatShapesABodysBytes) {
   revisions.insert(tileRevision(moon(), "field 2", {}, "1.5.5"));
   revisions.insert(tileRevision(moon(), "field 1", {}, "1.5.6"));
   revisions.insert(tileRevision(larger, "field 1", {}, "1.5.5"));
-  for (const WireSettings& wire : {cells, speed, normals}) revisions.insert(tileRevision(moon(), "field 1", wire, "1.5.5"));
+  for (const WireSettings& wire : {cells, speed, normals})
+    revisions.insert(tileRevision(moon(), "field 1", wire, "1.5.5"));
   EXPECT_EQ(revisions.size(), 7u);
   for (const std::string& revision : revisions) {
     EXPECT_EQ(revision.size(), 16u);

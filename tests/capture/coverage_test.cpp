@@ -1,0 +1,121 @@
+// The surface is closed: no pixel whose ray meets the body's lowest sphere shows background. The controls leave a tile out.
+
+#include "client/render/coverage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+
+#include "tests/capture/gl_fixture.h"
+
+namespace terrane {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 360;
+constexpr double kErrorPixels = 4;
+
+class CoverageTest : public GlTest {
+ protected:
+  static TileSource& moon() {
+    static TileSource source("moon");
+    return source;
+  }
+  static std::unique_ptr<TileRenderer> makeRenderer(const RendererOptions& options = {}) {
+    auto renderer = TileRenderer::create({}, options);
+    if (!renderer) throw std::runtime_error(renderer.error().text());
+    return std::move(*renderer);
+  }
+  static CoverageCount count(TileRenderer& renderer, const Camera& camera, const std::vector<FacePath>& paths, Placement placement) {
+    for (const FacePath& path : paths) renderer.upload(moon().tile(path));
+    return renderer.countCoverage(camera, paths, placement, moon().selection().occluderRadiusMeters);
+  }
+};
+
+/// The number of random cameras: few by default, TERRANE_CAMERAS for the full count.
+int cameraCount() {
+  const char* text = std::getenv("TERRANE_CAMERAS");  // NOLINT(concurrency-mt-unsafe)
+  return text != nullptr ? std::max(1, std::atoi(text)) : 6;
+}
+
+TEST_F(CoverageTest, EverySettledViewIsClosedFromTwentyCentimetresToTenThousandKilometres) {
+  constexpr unsigned kSeed = 20260801;
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::printf("seed %u, %d cameras\n", kSeed, cameraCount());
+  std::uint64_t skirt = 0;
+  for (int i = 0; i < cameraCount(); ++i) {
+    const double altitude = 0.2 * std::pow(1e7 / 0.2, unit(random));
+    const double pitch[] = {-90, -20, 5};  // down, level, up
+    ViewPose pose{(2 * unit(random) - 1) * 180 * kDegree, std::asin(2 * unit(random) - 1), altitude, 2 * unit(random) * 3.14159, pitch[i % 3] * kDegree};
+    const Camera camera = moon().cameraAboveGround(pose, kWidth, kHeight);
+    const std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);
+    auto renderer = makeRenderer();
+    for (const Placement placement : {Placement::Integer, Placement::DoubleFloat}) {
+      const CoverageCount covered = count(*renderer, camera, paths, placement);
+      EXPECT_EQ(covered.uncovered, 0u) << placementName(placement) << ", camera " << i << ": longitude " << pose.longitude << ", latitude "
+                                       << pose.latitude << ", " << altitude << " m above ground, heading " << pose.heading << ", pitch " << pose.pitch;
+      skirt += covered.skirt;
+    }
+  }
+  std::printf("pixels that show a skirt, over all: %llu\n", static_cast<unsigned long long>(skirt));
+}
+
+TEST_F(CoverageTest, LeavingOutATileIsSeen) {
+  const Camera camera = moon().cameraAboveGround({0.5, 0.3, 500.0, 0, -90 * kDegree}, kWidth, kHeight);
+  const std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);
+  auto renderer = makeRenderer();
+  const CoverageCount whole = count(*renderer, camera, paths, Placement::Integer);
+  EXPECT_EQ(whole.uncovered, 0u);
+  // The tile under the camera.
+  const FaceCoordinates below = cubeFaceCoordinates(camera.positionBody);
+  std::vector<FacePath> holed;
+  for (const FacePath& path : paths) {
+    const double width = std::ldexp(2.0, -path.level());
+    const bool isBelow = path.face() == below.face && std::floor((below.s + 1) / width) == path.column() && std::floor((below.t + 1) / width) == path.row();
+    if (!isBelow) holed.push_back(path);
+  }
+  ASSERT_EQ(holed.size() + 1, paths.size());
+  const CoverageCount open = renderer->countCoverage(camera, holed, Placement::Integer, moon().selection().occluderRadiusMeters);
+  EXPECT_GT(open.uncovered, 500u);
+}
+
+TEST_F(CoverageTest, TheBaselinePathCountsTheSame) {
+  const Camera camera = moon().cameraAboveGround({-1.0, 0.7, 50.0, 2.0, -10 * kDegree}, kWidth, kHeight);
+  const std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);
+  auto baseline = makeRenderer({.forceBaseline = true});
+  EXPECT_EQ(count(*baseline, camera, paths, Placement::Integer).uncovered, 0u);
+}
+
+Camera plainCamera(double altitudeMeters, double pitch) {
+  return cameraFromPose({0.4, -0.2, altitudeMeters, 0.7, pitch}, 1737400, 0.9, kWidth, kHeight);
+}
+
+TEST(Coverage, AnEmptyPictureCountsTheDiscOfTheBody) {
+  const double altitude = 1e7, lowest = 1737400;
+  const Camera camera = plainCamera(altitude, -90 * kDegree);
+  const std::vector<std::uint8_t> nothing(kWidth * kHeight, kCoverageNone);
+  const CoverageCount count = countCoveragePixels(camera, nothing, lowest);
+  const double distance = altitude + lowest;
+  const double radiusPixels = pixelsPerRadian(camera) * lowest / std::sqrt(distance * distance - lowest * lowest);
+  const double disc = 3.14159265358979 * radiusPixels * radiusPixels;
+  EXPECT_NEAR(static_cast<double>(count.uncovered), disc, 0.01 * disc);
+  const std::vector<std::uint8_t> surface(kWidth * kHeight, kCoverageSurface);
+  EXPECT_EQ(countCoveragePixels(camera, surface, lowest).uncovered, 0u);
+  const std::vector<std::uint8_t> skirts(kWidth * kHeight, 128);
+  EXPECT_EQ(countCoveragePixels(camera, skirts, lowest).skirt, static_cast<std::uint64_t>(kWidth * kHeight));
+}
+
+TEST(Coverage, AMillimetreAboveTheLowestSphereTheHorizonIsInTheMiddleOfALevelView) {
+  const std::vector<std::uint8_t> nothing(kWidth * kHeight, kCoverageNone);
+  // Half the rows look below the horizon, which a subtraction of squared distances would misplace.
+  EXPECT_EQ(countCoveragePixels(plainCamera(0.001, 0), nothing, 1737400).uncovered, static_cast<std::uint64_t>(kWidth * kHeight / 2));
+  EXPECT_EQ(countCoveragePixels(plainCamera(0.001, 80 * kDegree), nothing, 1737400).uncovered, 0u) << "looking up";
+  EXPECT_EQ(countCoveragePixels(plainCamera(-1, 80 * kDegree), nothing, 1737400).uncovered, static_cast<std::uint64_t>(kWidth * kHeight))
+      << "inside the sphere every ray meets it";
+}
+
+}  // namespace
+}  // namespace terrane
