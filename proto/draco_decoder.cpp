@@ -32,7 +32,8 @@ constexpr std::uint32_t kMaxAttributes = 4;
 class Peek {
  public:
   explicit Peek(const draco::DecoderBuffer& buffer)
-      : rest_(reinterpret_cast<const std::uint8_t*>(buffer.data_head()), static_cast<std::size_t>(buffer.remaining_size())) {}
+      : rest_(reinterpret_cast<const std::uint8_t*>(buffer.data_head()),
+              static_cast<std::size_t>(buffer.remaining_size())) {}
 
   std::optional<std::uint8_t> byte() {
     if (rest_.empty()) return std::nullopt;
@@ -50,8 +51,8 @@ class Peek {
   std::span<const std::uint8_t> rest_;
 };
 
-/// Draco's edgebreaker decoder, which looks at the attribute descriptors before they are acted on. Without this a few bytes could
-/// ask for millions of attributes of 255 components each.
+/// Draco's edgebreaker decoder, which looks at the attribute descriptors before they are acted on. Without this a few
+/// bytes could ask for millions of attributes of 255 components each.
 class GuardedDecoder : public draco::MeshEdgebreakerDecoder {
  public:
   explicit GuardedDecoder(const DracoAttributeIds& ids) : ids_(ids) {}
@@ -103,7 +104,8 @@ class GuardedDecoder : public draco::MeshEdgebreakerDecoder {
 template <class T>
 bool readAttribute(const draco::Mesh& mesh, int id, std::size_t components, std::vector<T>& values) {
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
-  if (attribute == nullptr || attribute->byte_stride() != static_cast<std::int64_t>(sizeof(T) * components)) return false;
+  if (attribute == nullptr || attribute->byte_stride() != static_cast<std::int64_t>(sizeof(T) * components))
+    return false;
   if (attribute->buffer() == nullptr || attribute->byte_offset() != 0) return false;
   const std::uint64_t available = attribute->buffer()->data_size() / (sizeof(T) * components);
   values.resize(components * mesh.num_points());
@@ -148,7 +150,8 @@ Result<TileMesh> copyMesh(const draco::Mesh& mesh, const DracoAttributeIds& ids)
   return out;
 }
 
-Result<TileMesh> decodeChecked(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids, const DracoHeader& header) {
+Result<TileMesh> decodeChecked(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                               const DracoHeader& header) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const draco::DecoderOptions options;
@@ -165,13 +168,19 @@ Result<TileMesh> decodeChecked(std::span<const std::uint8_t> bytes, const DracoA
 
 }  // namespace
 
-Result<TileMesh> decodeDraco(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids, const DecodeLimits& limits) {
+Result<TileMesh> decodeDraco(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             const DecodeLimits& limits) {
   if (ids.position < 0 || ids.normal < 0 || ids.grid < 0) return malformed("POSITION, NORMAL and _GRID are needed");
   if (bytes.size() > limits.maxBytes) return makeError(ErrorKind::TooLarge, "draco", "more bytes than the limit");
   const auto header = readDracoHeader(bytes);
   if (!header) return header.error();
-  if (header->vertexCount > limits.maxVertices) return makeError(ErrorKind::TooLarge, "draco", "more vertices than the limit");
-  if (header->triangleCount > limits.maxTriangles) return makeError(ErrorKind::TooLarge, "draco", "more triangles than the limit");
+  if (header->vertexCount > limits.maxVertices)
+    return makeError(ErrorKind::TooLarge, "draco", "more vertices than the limit");
+  if (header->triangleCount > limits.maxTriangles)
+    return makeError(ErrorKind::TooLarge, "draco", "more triangles than the limit");
+  if (bytes.size() > kMaxDracoBytesBesides + kMaxDracoBytesPerVertex * header->vertexCount) {
+    return malformed("more bytes than its vertices can need");
+  }
   if (header->attributeConnectivities != 0) return unsupported("attributes with seams are not read");
   try {
     return decodeChecked(bytes, ids, *header);

@@ -26,7 +26,8 @@ Result<void> checkMesh(const TileMesh& mesh) {
   if (mesh.offsets.size() != 3 * vertices) return invalid("offsets", "not three a vertex");
   if (mesh.normals.size() != 3 * vertices) return invalid("normals", "not three a vertex");
   if (!mesh.colors.empty() && mesh.colors.size() != 3 * vertices) return invalid("colors", "not three a vertex");
-  if (mesh.triangles.empty() || mesh.triangles.size() % 3 != 0) return invalid("triangles", "not three indices a triangle");
+  if (mesh.triangles.empty() || mesh.triangles.size() % 3 != 0)
+    return invalid("triangles", "not three indices a triangle");
   const std::uint32_t last = *std::max_element(mesh.triangles.begin(), mesh.triangles.end());
   if (last >= vertices) return invalid("triangles", "index out of range");
   for (std::size_t i = 0; i < mesh.normals.size(); i += 3) {
@@ -61,10 +62,13 @@ Result<DracoBuffer> encodeChecked(const TileMesh& mesh, const DracoSettings& set
   const std::vector<float> positions(mesh.offsets.begin(), mesh.offsets.end());
   using Attribute = draco::GeometryAttribute;
   DracoBuffer out;
-  out.positionId = addAttribute(input, Attribute::POSITION, draco::DT_FLOAT32, 3, false, positions.data(), 4 * positions.size());
-  out.normalId = addAttribute(input, Attribute::NORMAL, draco::DT_FLOAT32, 3, false, mesh.normals.data(), 4 * mesh.normals.size());
+  out.positionId =
+      addAttribute(input, Attribute::POSITION, draco::DT_FLOAT32, 3, false, positions.data(), 4 * positions.size());
+  out.normalId =
+      addAttribute(input, Attribute::NORMAL, draco::DT_FLOAT32, 3, false, mesh.normals.data(), 4 * mesh.normals.size());
   if (!mesh.colors.empty()) {
-    out.colorId = addAttribute(input, Attribute::COLOR, draco::DT_UINT8, 3, true, mesh.colors.data(), mesh.colors.size());
+    out.colorId =
+        addAttribute(input, Attribute::COLOR, draco::DT_UINT8, 3, true, mesh.colors.data(), mesh.colors.size());
   }
   out.gridId = addAttribute(input, Attribute::GENERIC, draco::DT_UINT16, 1, false, mesh.gridIndices.data(),
                             2 * mesh.gridIndices.size());
@@ -85,11 +89,14 @@ Result<DracoBuffer> encodeChecked(const TileMesh& mesh, const DracoSettings& set
   out.bytes.assign(first, first + buffer.size());
 
   const auto header = readDracoHeader(out.bytes);
-  if (!header) return makeError(ErrorKind::Internal, "draco", "wrote a header that Terrane does not read: " + header.error().message);
+  if (!header)
+    return makeError(ErrorKind::Internal, "draco",
+                     "wrote a header that Terrane does not read: " + header.error().message);
   out.vertexCount = header->vertexCount;
   out.triangleCount = header->triangleCount;
   if (out.vertexCount != mesh.vertexCount() || out.triangleCount != mesh.triangles.size() / 3) {
-    return invalid("triangles", "a vertex without triangle, a triangle with equal corners, or a vertex where sheets touch");
+    return invalid("triangles",
+                   "a vertex without triangle, a triangle with equal corners, or a vertex where sheets touch");
   }
   return out;
 }

@@ -42,15 +42,18 @@ Result<DracoHeader> readDracoHeader(std::span<const std::uint8_t> bytes) {
   if (bytes[7] != kTriangularMesh) return unsupported("not a triangle mesh");
   if (bytes[8] != kEdgebreaker) return unsupported("only the edgebreaker method is read");
   if (bytes[9] != 0 || bytes[10] != 0) return unsupported("metadata is not read");
-  if (bytes[11] != kTraversalStandard && bytes[11] != kTraversalValence) return unsupported("unknown edgebreaker traversal");
+  if (bytes[11] != kTraversalStandard && bytes[11] != kTraversalValence)
+    return unsupported("unknown edgebreaker traversal");
 
   DracoHeader header;
   auto rest = bytes.subspan(kFixedBytes + 1);
-  if (!readVarint(rest, header.vertexCount) || !readVarint(rest, header.triangleCount)) return malformed("cut in its counts");
+  if (!readVarint(rest, header.vertexCount) || !readVarint(rest, header.triangleCount))
+    return malformed("cut in its counts");
   if (rest.empty()) return malformed("cut in its counts");
   header.attributeConnectivities = rest.front();
   rest = rest.subspan(1);
-  if (!readVarint(rest, header.symbolCount) || !readVarint(rest, header.splitSymbolCount)) return malformed("cut in its counts");
+  if (!readVarint(rest, header.symbolCount) || !readVarint(rest, header.splitSymbolCount))
+    return malformed("cut in its counts");
   if (header.symbolCount > header.triangleCount) return malformed("more symbols than triangles");
   if (header.splitSymbolCount > header.symbolCount) return malformed("more split symbols than symbols");
   if (header.vertexCount > 3ull * header.triangleCount) return malformed("more vertices than corners");

@@ -23,7 +23,8 @@ std::uint32_t readWord(std::span<const std::uint8_t> bytes, std::size_t at) {
 Error malformed(const char* field, const char* message) { return makeError(ErrorKind::Malformed, field, message); }
 
 /// Takes a chunk of the given type off the front of rest.
-Result<std::span<const std::uint8_t>> takeChunk(std::span<const std::uint8_t>& rest, std::uint32_t type, const char* field) {
+Result<std::span<const std::uint8_t>> takeChunk(std::span<const std::uint8_t>& rest, std::uint32_t type,
+                                                const char* field) {
   if (rest.size() < kChunkHeaderBytes) return malformed(field, "no such chunk");
   const std::uint32_t length = readWord(rest, 0);
   if (readWord(rest, 4) != type) return malformed(field, "another chunk is in its place");

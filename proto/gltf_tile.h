@@ -1,8 +1,9 @@
 #pragma once
-// A tile as binary glTF 2.0 with KHR_draco_mesh_compression. The root node's matrix carries step, up axis and origin in doubles:
+// A tile as binary glTF 2.0 with KHR_draco_mesh_compression. The root node's matrix carries step, up axis and origin in
+// doubles:
 //   [s,0,0,0, 0,0,-s,0, 0,s,0,0, ox,oz,-oy,1]   (column-major; glTF is Y-up, the body frame Z-up)
-// and its extras.terrane the metadata. Vertices and normals are in body axes. Shortest round-trip decimals, no -0, so that equal
-// tiles are equal bytes. Thread-safe.
+// and its extras.terrane the metadata. Vertices and normals are in body axes. Shortest round-trip decimals, no -0, so
+// that equal tiles are equal bytes. Thread-safe.
 
 #include <cstdint>
 #include <span>
@@ -15,13 +16,14 @@
 namespace terrane {
 
 /// Wraps an encoded mesh. offsetsMin/Max: of the mesh's offsets, for the accessor.
-Result<std::vector<std::uint8_t>> writeTileGlb(const TileMetadata& metadata, const TileMesh& mesh, const DracoBuffer& draco);
+Result<std::vector<std::uint8_t>> writeTileGlb(const TileMetadata& metadata, const TileMesh& mesh,
+                                               const DracoBuffer& draco);
 
 /// encodeDraco and writeTileGlb.
 Result<std::vector<std::uint8_t>> encodeTile(const Tile& tile, const DracoSettings& settings);
 
-/// Any bytes: a tile or one clear error, bounded memory, no file or network access. Errors: Malformed, TooLarge, Unsupported; field
-/// names the part ("header", "json", "bin", "extras.terrane.origin", "draco").
+/// Any bytes: a tile or one clear error, bounded memory, no file or network access. Errors: Malformed, TooLarge,
+/// Unsupported; field names the part ("header", "json", "bin", "extras.terrane.origin", "draco").
 Result<Tile> decodeTile(std::span<const std::uint8_t> glb, const DecodeLimits& limits = {});
 
 }  // namespace terrane

@@ -26,7 +26,8 @@ glm::dvec3 readVector(const JsonCursor& at) {
 
 HeightRange readHeights(const JsonCursor& at) {
   at.arraySize(2, 2);
-  const HeightRange heights{at.element(0).number(-kMaxMeters, kMaxMeters), at.element(1).number(-kMaxMeters, kMaxMeters)};
+  const HeightRange heights{at.element(0).number(-kMaxMeters, kMaxMeters),
+                            at.element(1).number(-kMaxMeters, kMaxMeters)};
   if (heights.minMeters > heights.maxMeters) at.fail("the lowest is above the highest");
   return heights;
 }
@@ -45,7 +46,8 @@ FacePath readPath(const JsonCursor& extras) {
     at.fail(path.error().text());
     return {};
   }
-  if (extras.member("level").integer(0, FacePath::kMaxLevel) != path->level()) extras.member("level").fail("not the path's");
+  if (extras.member("level").integer(0, FacePath::kMaxLevel) != path->level())
+    extras.member("level").fail("not the path's");
   return *path;
 }
 
@@ -112,16 +114,21 @@ int attributeId(const JsonCursor& attributes, std::string_view name) {
 std::int64_t accessorCount(const JsonCursor& document, const JsonCursor& reference) {
   constexpr std::int64_t kMaxIndex = 1 << 20;
   const JsonCursor accessors = document.member("accessors");
-  return accessors.element(static_cast<std::size_t>(reference.integer(0, kMaxIndex))).member("count").integer(1, UINT32_MAX);
+  return accessors.element(static_cast<std::size_t>(reference.integer(0, kMaxIndex)))
+      .member("count")
+      .integer(1, UINT32_MAX);
 }
 
-void readBufferView(const JsonCursor& document, const JsonCursor& reference, std::size_t binBytes, Primitive& primitive) {
+void readBufferView(const JsonCursor& document, const JsonCursor& reference, std::size_t binBytes,
+                    Primitive& primitive) {
   document.member("buffers").arraySize(1, 1);
   const JsonCursor buffer = document.member("buffers").element(0);
-  if (const auto uri = buffer.optionalMember("uri")) uri->fail("only the GLB's own buffer is read", ErrorKind::Unsupported);
+  if (const auto uri = buffer.optionalMember("uri"))
+    uri->fail("only the GLB's own buffer is read", ErrorKind::Unsupported);
   const auto most = static_cast<std::int64_t>(binBytes);
   const std::int64_t bufferBytes = buffer.member("byteLength").integer(1, most);
-  const JsonCursor view = document.member("bufferViews").element(static_cast<std::size_t>(reference.integer(0, 1 << 20)));
+  const JsonCursor view =
+      document.member("bufferViews").element(static_cast<std::size_t>(reference.integer(0, 1 << 20)));
   view.member("buffer").integer(0, 0);
   const auto offset = view.optionalMember("byteOffset");
   const std::int64_t offsetBytes = offset ? offset->integer(0, bufferBytes) : 0;
@@ -131,7 +138,8 @@ void readBufferView(const JsonCursor& document, const JsonCursor& reference, std
 
 Primitive readPrimitive(const JsonCursor& document, const JsonCursor& node, std::size_t binBytes) {
   Primitive result;
-  const JsonCursor mesh = document.member("meshes").element(static_cast<std::size_t>(node.member("mesh").integer(0, 1 << 20)));
+  const JsonCursor mesh =
+      document.member("meshes").element(static_cast<std::size_t>(node.member("mesh").integer(0, 1 << 20)));
   mesh.member("primitives").arraySize(1, 1);
   const JsonCursor primitive = mesh.member("primitives").element(0);
   if (const auto mode = primitive.optionalMember("mode")) mode->integer(4, 4);
@@ -156,7 +164,8 @@ Result<Tile> decodeChunks(const GlbChunks& chunks, const DecodeLimits& limits) {
   if (json.member("asset").member("version").text(16) != "2.0") {
     json.member("asset").member("version").fail("only glTF 2.0 is read", ErrorKind::Unsupported);
   }
-  const JsonCursor scene = json.member("scenes").element(static_cast<std::size_t>(json.member("scene").integer(0, 1 << 20)));
+  const JsonCursor scene =
+      json.member("scenes").element(static_cast<std::size_t>(json.member("scene").integer(0, 1 << 20)));
   const JsonCursor roots = scene.member("nodes");
   roots.arraySize(1, 1);
   const JsonCursor node = json.member("nodes").element(static_cast<std::size_t>(roots.element(0).integer(0, 1 << 20)));
@@ -172,8 +181,10 @@ Result<Tile> decodeChunks(const GlbChunks& chunks, const DecodeLimits& limits) {
   auto mesh = decodeDraco(chunks.bin.subspan(primitive.dracoOffset, primitive.dracoBytes), primitive.ids, limits);
   if (!mesh) return mesh.error();
   const auto refuse = [](const char* message) { return makeError(ErrorKind::Malformed, "draco", message); };
-  if (static_cast<std::int64_t>(mesh->vertexCount()) != primitive.vertexCount) return refuse("other vertices than the accessor");
-  if (static_cast<std::int64_t>(mesh->triangles.size()) != primitive.indexCount) return refuse("other indices than the accessor");
+  if (static_cast<std::int64_t>(mesh->vertexCount()) != primitive.vertexCount)
+    return refuse("other vertices than the accessor");
+  if (static_cast<std::int64_t>(mesh->triangles.size()) != primitive.indexCount)
+    return refuse("other indices than the accessor");
   const std::size_t gridLimit = vertexLimit(tile.metadata.cellsPerEdge);
   for (const std::uint16_t index : mesh->gridIndices) {
     if (index >= gridLimit) return refuse("a grid index beyond the grid");

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kByte = 5121, kShort = 5123, kInt = 5125, kFloat = 5126;  // glTF component types, the integers unsigned
 
-/// Appends JSON. The document has one form, so it is written as text around its numbers: a JSON library took longer than all
-/// the rest of the container, and its number formats are its own.
+/// Appends JSON. The document has one form, so it is written as text around its numbers: a JSON library took longer
+/// than all the rest of the container, and its number formats are its own.
 class JsonText {
  public:
   explicit JsonText(std::size_t expectedBytes) { text_.reserve(expectedBytes); }
@@ -56,9 +56,11 @@ class JsonText {
 };
 
 bool allFinite(const TileMetadata& m) {
-  const std::array values{m.heights.minMeters, m.heights.maxMeters, m.subtreeHeights.minMeters, m.subtreeHeights.maxMeters,
-                          m.geometricErrorMeters, m.sphere.center.x, m.sphere.center.y, m.sphere.center.z, m.sphere.radiusMeters,
-                          static_cast<double>(m.skirtMeters)};
+  const std::array values{m.heights.minMeters,        m.heights.maxMeters,
+                          m.subtreeHeights.minMeters, m.subtreeHeights.maxMeters,
+                          m.geometricErrorMeters,     m.sphere.center.x,
+                          m.sphere.center.y,          m.sphere.center.z,
+                          m.sphere.radiusMeters,      static_cast<double>(m.skirtMeters)};
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
@@ -92,7 +94,8 @@ void writeAccessors(JsonText& json, const TileMesh& mesh, const DracoBuffer& dra
 void writeMesh(JsonText& json, const DracoBuffer& draco) {
   json.raw("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":1,\"NORMAL\":2,\"_GRID\":3");
   if (draco.colorId >= 0) json.raw(",\"COLOR_0\":4");
-  json.raw("},\"indices\":0,\"material\":0,\"mode\":4,\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,");
+  json.raw(
+      "},\"indices\":0,\"material\":0,\"mode\":4,\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,");
   json.raw("\"attributes\":{\"POSITION\":").number(draco.positionId).raw(",\"NORMAL\":").number(draco.normalId);
   json.raw(",\"_GRID\":").number(draco.gridId);
   if (draco.colorId >= 0) json.raw(",\"COLOR_0\":").number(draco.colorId);
@@ -103,7 +106,8 @@ void writeNode(JsonText& json, const TileMetadata& m) {
   const double step = stepMeters(m.stepExponent);
   const glm::dvec3 origin = latticePosition(m.origin, m.stepExponent);
   json.raw("\"nodes\":[{\"mesh\":0,\"matrix\":");
-  json.list(std::array{step, 0.0, 0.0, 0.0, 0.0, 0.0, -step, 0.0, 0.0, step, 0.0, 0.0, origin.x, origin.z, -origin.y, 1.0});
+  json.list(
+      std::array{step, 0.0, 0.0, 0.0, 0.0, 0.0, -step, 0.0, 0.0, step, 0.0, 0.0, origin.x, origin.z, -origin.y, 1.0});
   json.raw(",\"extras\":{\"terrane\":{\"path\":\"").raw(m.path.text());
   json.raw("\",\"level\":").number(m.path.level());
   json.raw(",\"stepExponent\":").number(m.stepExponent).raw(",\"step\":").number(step);
@@ -111,7 +115,8 @@ void writeNode(JsonText& json, const TileMetadata& m) {
   json.raw(",\"heights\":").list(std::array{m.heights.minMeters, m.heights.maxMeters});
   json.raw(",\"subtreeHeights\":").list(std::array{m.subtreeHeights.minMeters, m.subtreeHeights.maxMeters});
   json.raw(",\"geometricError\":").number(m.geometricErrorMeters);
-  json.raw(",\"sphere\":").list(std::array{m.sphere.center.x, m.sphere.center.y, m.sphere.center.z, m.sphere.radiusMeters});
+  json.raw(",\"sphere\":")
+      .list(std::array{m.sphere.center.x, m.sphere.center.y, m.sphere.center.z, m.sphere.radiusMeters});
   json.raw(",\"horizonPoint\":");
   isFinite(m.horizonPoint) ? json.list(m.horizonPoint) : json.raw("null");
   json.raw(",\"cellsPerEdge\":").number(m.cellsPerEdge);
@@ -138,7 +143,8 @@ std::string writeDocument(const TileMetadata& metadata, const TileMesh& mesh, co
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> writeTileGlb(const TileMetadata& metadata, const TileMesh& mesh, const DracoBuffer& draco) {
+Result<std::vector<std::uint8_t>> writeTileGlb(const TileMetadata& metadata, const TileMesh& mesh,
+                                               const DracoBuffer& draco) {
   if (!allFinite(metadata)) return makeError(ErrorKind::InvalidArgument, "metadata", "a number that is not finite");
   if (mesh.vertexCount() != draco.vertexCount || mesh.offsets.size() != 3 * mesh.vertexCount()) {
     return makeError(ErrorKind::InvalidArgument, "draco", "encodes another mesh");

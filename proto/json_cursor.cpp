@@ -134,15 +134,19 @@ JsonDocument& JsonDocument::operator=(JsonDocument&&) noexcept = default;
 JsonDocument::~JsonDocument() = default;
 
 Result<JsonDocument> JsonDocument::parse(std::string_view text, const Limits& limits, std::string_view field) {
-  if (text.size() > limits.maxBytes) return makeError(ErrorKind::TooLarge, std::string(field), "more bytes than the limit");
-  if (nestingDepth(text) > limits.maxDepth) return makeError(ErrorKind::TooLarge, std::string(field), "nested too deep");
+  if (text.size() > limits.maxBytes)
+    return makeError(ErrorKind::TooLarge, std::string(field), "more bytes than the limit");
+  if (nestingDepth(text) > limits.maxDepth)
+    return makeError(ErrorKind::TooLarge, std::string(field), "nested too deep");
   auto state = std::make_unique<State>();
   state->json = nlohmann::json::parse(text, nullptr, false);
   if (state->json.is_discarded()) return makeError(ErrorKind::Malformed, std::string(field), "not JSON");
   return JsonDocument(std::move(state));
 }
 
-JsonCursor JsonDocument::root(std::string prefix) { return JsonCursor(&state_->json, std::move(prefix), &state_->error); }
+JsonCursor JsonDocument::root(std::string prefix) {
+  return JsonCursor(&state_->json, std::move(prefix), &state_->error);
+}
 
 const std::optional<Error>& JsonDocument::error() const noexcept { return state_->error; }
 

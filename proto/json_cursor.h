@@ -1,7 +1,8 @@
 #pragma once
-// Reading JSON of unknown origin: a document that is bounded in bytes and nesting before it is parsed, and a cursor that walks it and
-// keeps the first thing that was wrong, named by its key ("bodies[0].radiusMeters"), so that reading code is a plain list of members.
-// After an error every read answers a value within its stated range. Private to proto. A document may be read by one thread at a time.
+// Reading JSON of unknown origin: a document that is bounded in bytes and nesting before it is parsed, and a cursor
+// that walks it and keeps the first thing that was wrong, named by its key ("bodies[0].radiusMeters"), so that reading
+// code is a plain list of members. After an error every read answers a value within its stated range. Private to proto.
+// A document may be read by one thread at a time.
 
 #include <cstddef>
 #include <cstdint>

@@ -15,7 +15,8 @@ constexpr std::size_t kMaxNameBytes = 256, kMaxSummaryBytes = 4096;
 constexpr int kMaxCellsPerEdge = 1024;
 
 bool consistsOf(std::string_view text, std::size_t shortest, std::size_t longest, std::string_view characters) {
-  return text.size() >= shortest && text.size() <= longest && text.find_first_not_of(characters) == std::string_view::npos;
+  return text.size() >= shortest && text.size() <= longest &&
+         text.find_first_not_of(characters) == std::string_view::npos;
 }
 
 std::string readPattern(const JsonCursor& at, std::size_t shortest, std::size_t longest, std::string_view characters,
@@ -59,7 +60,8 @@ std::vector<double> readGeometricErrors(const JsonCursor& at, int maxLevel) {
 
 BodyInfo readBody(const JsonCursor& at) {
   BodyInfo body;
-  body.name = readPattern(at.member("name"), 1, 32, "abcdefghijklmnopqrstuvwxyz0123456789-", "not 1 to 32 of a-z, 0-9 and -");
+  body.name =
+      readPattern(at.member("name"), 1, 32, "abcdefghijklmnopqrstuvwxyz0123456789-", "not 1 to 32 of a-z, 0-9 and -");
   body.revision = readPattern(at.member("revision"), 8, 64, "0123456789abcdef", "not 8 to 64 of 0-9 and a-f");
   body.schemes = readSchemes(at.member("schemes"));
   body.cellsPerEdge = static_cast<int>(at.member("cellsPerEdge").integer(1, kMaxCellsPerEdge));
@@ -78,7 +80,8 @@ BodyInfo readBody(const JsonCursor& at) {
   return body;
 }
 
-/// Empty if this build does not know the effect. Settings that it does not know are skipped, absent ones have their defaults.
+/// Empty if this build does not know the effect. Settings that it does not know are skipped, absent ones have their
+/// defaults.
 std::optional<EffectCall> readEffect(const JsonCursor& at) {
   const auto kind = findEffect(at.member("name").text(kMaxNameBytes));
   if (!kind) return std::nullopt;
@@ -101,7 +104,8 @@ SceneInfo readScene(const JsonCursor& at) {
   for (std::size_t i = 0; i < bodyCount && at.ok(); ++i) {
     scene.bodies.push_back(readBody(bodies.element(i)));
     const auto same = [&](const BodyInfo& other) { return other.name == scene.bodies.back().name; };
-    if (std::count_if(scene.bodies.begin(), scene.bodies.end(), same) > 1) bodies.element(i).member("name").fail("named twice");
+    if (std::count_if(scene.bodies.begin(), scene.bodies.end(), same) > 1)
+      bodies.element(i).member("name").fail("named twice");
   }
   const JsonCursor effects = at.member("effects");
   const std::size_t effectCount = effects.arraySize(0, kMaxEffects);

@@ -28,8 +28,8 @@ struct SceneInfo {
 };
 
 std::string writeSceneJson(const SceneInfo& scene);
-/// Any bytes: a scene or one error naming the key, e.g. "bodies[0].radiusMeters". Unknown effects are skipped, so that an old
-/// viewer opens a newer server's scene.
+/// Any bytes: a scene or one error naming the key, e.g. "bodies[0].radiusMeters". Unknown effects are skipped, so that
+/// an old viewer opens a newer server's scene.
 Result<SceneInfo> readSceneJson(std::string_view json);
 
 }  // namespace terrane

@@ -12,14 +12,14 @@
 
 namespace terrane {
 
-/// Vertices in structure-of-arrays form. Grid vertex (i, j) has grid index j * (cells + 1) + i; skirt vertices follow from
-/// (cells + 1)^2 on, in the order VMin, UMax, VMax, UMin edges (counter-clockwise from outside), cells + 1 each.
+/// Vertices in structure-of-arrays form. Grid vertex (i, j) has grid index j * (cells + 1) + i; skirt vertices follow
+/// from (cells + 1)^2 on, in the order VMin, UMax, VMax, UMin edges (counter-clockwise from outside), cells + 1 each.
 struct TileMesh {
-  std::vector<std::uint16_t> offsets;    ///< 3 a vertex: lattice steps from the tile's origin, body axes
-  std::vector<float> normals;            ///< 3 a vertex: unit, body axes
-  std::vector<std::uint8_t> colors;      ///< 3 a vertex: linear reflectance / kColorScale, empty if the body has one colour
-  std::vector<std::uint16_t> gridIndices;///< 1 a vertex
-  std::vector<std::uint32_t> triangles;  ///< 3 indices a triangle, counter-clockwise from outside
+  std::vector<std::uint16_t> offsets;  ///< 3 a vertex: lattice steps from the tile's origin, body axes
+  std::vector<float> normals;          ///< 3 a vertex: unit, body axes
+  std::vector<std::uint8_t> colors;  ///< 3 a vertex: linear reflectance / kColorScale, empty if the body has one colour
+  std::vector<std::uint16_t> gridIndices;  ///< 1 a vertex
+  std::vector<std::uint32_t> triangles;    ///< 3 indices a triangle, counter-clockwise from outside
   std::size_t vertexCount() const noexcept { return gridIndices.size(); }
 };
 
@@ -29,10 +29,10 @@ inline constexpr float kColorScale = 0.4f;
 /// extras.terrane of a tile's root node.
 struct TileMetadata {
   FacePath path;
-  int stepExponent = 0;       ///< step = 2^stepExponent metres
-  LatticePoint origin{0};     ///< in steps
-  HeightRange heights;        ///< of the tile's own vertices
-  HeightRange subtreeHeights; ///< proven to hold for every descendant too
+  int stepExponent = 0;        ///< step = 2^stepExponent metres
+  LatticePoint origin{0};      ///< in steps
+  HeightRange heights;         ///< of the tile's own vertices
+  HeightRange subtreeHeights;  ///< proven to hold for every descendant too
   double geometricErrorMeters = 0;
   Sphere sphere;
   glm::dvec3 horizonPoint{0.0};

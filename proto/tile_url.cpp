@@ -26,8 +26,8 @@ int hexDigit(char c) {
 
 /// RFC 3986 section 2.3: an escape of these is the same as the character.
 bool isUnreserved(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '_' ||
-         c == '~';
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.' ||
+         c == '_' || c == '~';
 }
 
 /// The path alone, of origin-form or absolute-form (RFC 9112 section 3.2), without the query.
@@ -76,7 +76,7 @@ bool hasDotSegment(std::string_view path) {
 
 /// The segments between slashes; empty if there are more than any route has.
 std::optional<std::span<const std::string_view>> splitSegments(std::string_view path,
-                                                              std::array<std::string_view, kMaxSegments>& storage) {
+                                                               std::array<std::string_view, kMaxSegments>& storage) {
   std::size_t count = 0;
   for (std::size_t begin = 1; begin <= path.size();) {
     const std::size_t end = std::min(path.find('/', begin), path.size());
@@ -111,7 +111,8 @@ Result<Route> parseTile(std::span<const std::string_view> parts) {
 
 Result<Route> parseTarget(std::string_view target) {
   if (target.size() > kMaxTargetBytes) return makeError(ErrorKind::TooLarge, "target", "longer than 2048 bytes");
-  if (!std::all_of(target.begin(), target.end(), isVisibleAscii)) return invalid("target", "a control character or one beyond ASCII");
+  if (!std::all_of(target.begin(), target.end(), isVisibleAscii))
+    return invalid("target", "a control character or one beyond ASCII");
   auto path = normalise(pathOf(target));
   if (!path) return path.error();
   if (*path == "/") return Route(RootPage{});

@@ -1,6 +1,7 @@
 #pragma once
-// The targets of HTTP requests: one grammar for server and client. "//" is read as "/", escapes of unreserved characters as those
-// characters, "http://host/path" as "/path"; a query is ignored, since clients add their own. Thread-safe.
+// The targets of HTTP requests: one grammar for server and client. "//" is read as "/", escapes of unreserved
+// characters as those characters, "http://host/path" as "/path"; a query is ignored, since clients add their own.
+// Thread-safe.
 //   /v1/scene.json
 //   /v1/{revision}/{body}/{scheme}/{face}[/{digits}].glb
 
@@ -26,8 +27,9 @@ struct TileAddress {
 };
 using Route = std::variant<RootPage, HealthCheck, ReadyCheck, SceneDocument, TileAddress>;
 
-/// Any bytes. Errors: NotFound for a path that is no route; TooLarge ("target") beyond kMaxTargetBytes; InvalidArgument naming "face",
-/// "digits", "scheme", "body", "revision", or "target" (dot segments, a character or an escape that no route can hold).
+/// Any bytes. Errors: NotFound for a path that is no route; TooLarge ("target") beyond kMaxTargetBytes; InvalidArgument
+/// naming "face", "digits", "scheme", "body", "revision", or "target" (dot segments, a character or an escape that no
+/// route can hold).
 Result<Route> parseTarget(std::string_view target);
 
 std::string tileTarget(const TileAddress& address);

@@ -58,9 +58,29 @@ std::optional<double> parseNumber(std::string_view text) {
 // What CLI11 fills in before it is checked.
 struct RawOptions {
   ViewOptions options;
-  std::string camera, size = "1280x720", placement = "auto", cache, cacheBudget = "512MiB", memoryBudget = "128MiB";
+  std::optional<std::string> camera;
+  std::string size = "1280x720", placement = "auto", cache, cacheBudget = "512MiB", memoryBudget = "128MiB";
   double fieldOfViewDegrees = 50;
 };
+
+// Help texts start in column 40 and end before column 110.
+std::string wrapped(std::string_view text) {
+  constexpr std::size_t kWidth = 70;
+  std::string result;
+  std::size_t column = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    if (column > 0 && column + 1 + end > kWidth) {
+      result += '\n';
+      column = 0;
+    }
+    if (column > 0) result += ' ';
+    result += text.substr(0, end);
+    column += (column > 0 ? 1 : 0) + end;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
 
 void declareOptions(CLI::App& app, RawOptions& raw) {
   ViewOptions& o = raw.options;
@@ -134,8 +154,8 @@ std::string defaultCacheFile(EnvironmentLookup environment) {
 Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   ViewOptions& o = raw.options;
   if (o.serverUrl.empty()) return flagError("--server", "is missing: where is the server? e.g. --server http://127.0.0.1:8080");
-  if (!raw.camera.empty()) {
-    const auto pose = parseCamera(raw.camera);
+  if (raw.camera) {
+    const auto pose = parseCamera(*raw.camera);
     if (!pose) return pose.error();
     o.camera = *pose;
   }
@@ -175,6 +195,11 @@ Error errorOf(const CLI::ParseError& error, const CLI::App& app) {
   }
   std::string message = error.what();
   std::replace(message.begin(), message.end(), '\n', ' ');
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {  // "Could not convert: --error = abc"
+    const std::size_t flag = message.find("--"), value = message.find(" = ");
+    if (flag != std::string::npos && value != std::string::npos && value > flag)
+      return flagError(message.substr(flag, value - flag), fmt::format("\"{}\" is no number", message.substr(value + 3)));
+  }
   if (message.rfind("--", 0) == 0) {
     const std::size_t end = message.find_first_of(": ");
     const std::size_t text = message.find_first_not_of(": ", end);
@@ -248,6 +273,7 @@ Result<std::variant<ViewOptions, OptionsText>> parseViewOptions(const std::vecto
   app.footer(kFooter);
   app.set_version_flag("--version", "terrane-view " TERRANE_VERSION);
   app.get_formatter()->column_width(40);
+  for (CLI::Option* option : app.get_options()) option->description(wrapped(option->get_description()));
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them last first
   } catch (const CLI::CallForHelp&) {

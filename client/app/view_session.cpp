@@ -249,10 +249,11 @@ ViewPose wholeBodyPose(const SceneInfo& scene, const BodyInfo& body, double vert
   pose.altitudeMeters = body.selection.radiusMeters * (1 / std::sin(halfAngle) - 1);
   pose.pitch = -std::numbers::pi / 2;
   for (const EffectCall& effect : scene.effects) {
-    const auto longitude = effect.parameters.find("longitude");
-    // 55 degrees from where the sun stands overhead: half a morning, relief in long shadows on one side.
-    if (effect.kind == EffectKind::Sun && longitude != effect.parameters.end())
-      pose.longitude = std::remainder(longitude->second - 55 * std::numbers::pi / 180, 2 * std::numbers::pi);
+    const auto longitude = effect.parameters.find("longitude"), latitude = effect.parameters.find("latitude");
+    if (effect.kind != EffectKind::Sun || longitude == effect.parameters.end() || latitude == effect.parameters.end()) continue;
+    // West of where the sun stands overhead: there it is morning, and low light shows relief.
+    pose.longitude = std::remainder(longitude->second - 62 * std::numbers::pi / 180, 2 * std::numbers::pi);
+    pose.latitude = latitude->second;
   }
   return pose;
 }

@@ -58,16 +58,19 @@ Result<FlightPoint> parsePose(std::string_view line, const std::string& where) {
     const Column& column = kColumns[i];
     const std::string_view word = nextWord(line);
     if (word.empty()) {
-      return makeError(ErrorKind::Malformed, where,
-                       fmt::format("{} is missing; expected: seconds longitude latitude altitude heading pitch", column.name));
+      return makeError(
+          ErrorKind::Malformed, where,
+          fmt::format("{} is missing; expected: seconds longitude latitude altitude heading pitch", column.name));
     }
     const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value[i]);
     if (failure != std::errc() || end != word.data() + word.size() || !std::isfinite(value[i])) {
-      return makeError(ErrorKind::Malformed, where, fmt::format("{} is no finite number: {}", column.name, shown(word)));
+      return makeError(ErrorKind::Malformed, where,
+                       fmt::format("{} is no finite number: {}", column.name, shown(word)));
     }
     if (value[i] < column.minimum || value[i] > column.maximum) {
-      return makeError(ErrorKind::Malformed, where,
-                       fmt::format("{} must be from {} to {}: {}", column.name, column.minimum, column.maximum, shown(word)));
+      return makeError(
+          ErrorKind::Malformed, where,
+          fmt::format("{} must be from {} to {}: {}", column.name, column.minimum, column.maximum, shown(word)));
     }
   }
   if (const std::string_view more = nextWord(line); !more.empty()) {
@@ -99,8 +102,9 @@ void interpolatePlace(const ViewPose& a, const ViewPose& b, double f, ViewPose& 
     pose.latitude = a.latitude + f * (b.latitude - a.latitude);
     return;
   }
-  if (sine < 1e-9) side = {-std::sin(a.latitude) * std::cos(a.longitude), -std::sin(a.latitude) * std::sin(a.longitude),
-                           std::cos(a.latitude)};
+  if (sine < 1e-9)
+    side = {-std::sin(a.latitude) * std::cos(a.longitude), -std::sin(a.latitude) * std::sin(a.longitude),
+            std::cos(a.latitude)};
   side = glm::normalize(side);
   const glm::dvec3 at = std::cos(f * angle) * from + std::sin(f * angle) * side;
   pose.longitude = std::atan2(at.y, at.x);
@@ -122,7 +126,8 @@ Flight descent(double longitude, double latitude) {
   for (std::size_t i = 0; i < kDescentAltitudesMeters.size(); ++i) {
     const double fallen = std::log(kDescentAltitudesMeters.front() / kDescentAltitudesMeters[i]);
     const double seconds = i + 1 == kDescentAltitudesMeters.size() ? kSeconds : kSeconds * fallen / whole;
-    flight.points.push_back({seconds, {longitude, latitude, kDescentAltitudesMeters[i], 0, kPitchDegrees[i] * kRadiansPerDegree}});
+    flight.points.push_back(
+        {seconds, {longitude, latitude, kDescentAltitudesMeters[i], 0, kPitchDegrees[i] * kRadiansPerDegree}});
   }
   return flight;
 }
@@ -167,7 +172,8 @@ Result<Flight> parseFlight(std::string_view text, std::string_view fileName) {
       std::string_view rest = line.substr(kHeader.size());
       const std::string_view version = nextWord(rest);
       if (version != "1") {
-        return makeError(ErrorKind::Unsupported, where(), "flight version " + shown(version) + "; this viewer reads version 1");
+        return makeError(ErrorKind::Unsupported, where(),
+                         "flight version " + shown(version) + "; this viewer reads version 1");
       }
     }
     line = line.substr(0, line.find('#'));
@@ -175,8 +181,10 @@ Result<Flight> parseFlight(std::string_view text, std::string_view fileName) {
     const std::string_view first = nextWord(rest);
     if (first.empty()) continue;
     if (first == "above-ground") {
-      if (!flight.points.empty()) return makeError(ErrorKind::Malformed, where(), "above-ground must come before the first pose");
-      if (!nextWord(rest).empty()) return makeError(ErrorKind::Malformed, where(), "above-ground stands alone on its line");
+      if (!flight.points.empty())
+        return makeError(ErrorKind::Malformed, where(), "above-ground must come before the first pose");
+      if (!nextWord(rest).empty())
+        return makeError(ErrorKind::Malformed, where(), "above-ground stands alone on its line");
       flight.aboveGround = true;
       continue;
     }
@@ -191,7 +199,9 @@ Result<Flight> parseFlight(std::string_view text, std::string_view fileName) {
     }
     flight.points.push_back(*point);
   }
-  if (flight.points.empty()) return makeError(ErrorKind::Malformed, fmt::format("{}:{}", fileName, std::max<std::size_t>(number, 1)), "no pose in the file");
+  if (flight.points.empty())
+    return makeError(ErrorKind::Malformed, fmt::format("{}:{}", fileName, std::max<std::size_t>(number, 1)),
+                     "no pose in the file");
   return flight;
 }
 
@@ -202,7 +212,8 @@ Result<Flight> loadFlight(const std::string& file) {
   std::array<char, 1 << 16> chunk{};
   while (stream.read(chunk.data(), chunk.size()) || stream.gcount() > 0) {
     text.append(chunk.data(), static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > kMaxFileBytes) return makeError(ErrorKind::TooLarge, "--flight", file + " is larger than 256 MiB");
+    if (text.size() > kMaxFileBytes)
+      return makeError(ErrorKind::TooLarge, "--flight", file + " is larger than 256 MiB");
   }
   if (stream.bad()) return makeError(ErrorKind::Io, "--flight", "cannot read " + file);
   return parseFlight(text, file);
@@ -210,16 +221,18 @@ Result<Flight> loadFlight(const std::string& file) {
 
 std::string writeFlight(const Flight& flight) {
   std::string text = "# terrane flight 1\n";
-  text += flight.aboveGround ? "# seconds longitude latitude altitude heading pitch   (degrees, metres above ground)\nabove-ground\n"
-                             : "# seconds longitude latitude altitude heading pitch   (degrees, metres above the reference sphere)\n";
+  text += flight.aboveGround
+              ? "# seconds longitude latitude altitude heading pitch   (degrees, metres above ground)\nabove-ground\n"
+              : "# seconds longitude latitude altitude heading pitch   (degrees, metres above the reference sphere)\n";
   // Whole turns beyond the range that a file may hold are dropped.
   const auto degrees = [](double radians) {
     return (std::abs(radians) > 2 * kPi ? std::remainder(radians, 2 * kPi) : radians) / kRadiansPerDegree;
   };
   for (const FlightPoint& point : flight.points) {
     const ViewPose& pose = point.pose;
-    fmt::format_to(std::back_inserter(text), "{} {:.14g} {:.14g} {} {:.14g} {:.14g}\n", point.seconds, degrees(pose.longitude),
-                   degrees(pose.latitude), pose.altitudeMeters, degrees(pose.heading), degrees(pose.pitch));
+    fmt::format_to(std::back_inserter(text), "{} {:.14g} {:.14g} {} {:.14g} {:.14g}\n", point.seconds,
+                   degrees(pose.longitude), degrees(pose.latitude), pose.altitudeMeters, degrees(pose.heading),
+                   degrees(pose.pitch));
   }
   return text;
 }
@@ -245,11 +258,13 @@ ViewPose poseAt(const Flight& flight, double seconds) {
 
 Result<Flight> builtInFlight(std::string_view name, double longitude, double latitude) {
   if (!std::isfinite(longitude) || !std::isfinite(latitude) || std::abs(latitude) > kPi / 2 + 1e-12) {
-    return makeError(ErrorKind::InvalidArgument, "--flight", "needs a place: a finite longitude and a latitude from -90 to 90 degrees");
+    return makeError(ErrorKind::InvalidArgument, "--flight",
+                     "needs a place: a finite longitude and a latitude from -90 to 90 degrees");
   }
   if (name == "descent") return descent(longitude, latitude);
   if (name == "orbit") return orbit(longitude, latitude);
-  return makeError(ErrorKind::InvalidArgument, "--flight", shown(name) + " is no flight; built in are descent and orbit, else name a file");
+  return makeError(ErrorKind::InvalidArgument, "--flight",
+                   shown(name) + " is no flight; built in are descent and orbit, else name a file");
 }
 
 }  // namespace terrane

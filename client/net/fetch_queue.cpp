@@ -37,7 +37,8 @@ struct Request {
 /// One kept connection and the request it carries. I/O thread only.
 struct Slot {
   std::shared_ptr<HttpLink> link;
-  FetchQueue::Id running = 0;  ///< 0: free. May name a request that was cancelled, while the rest of its answer is read away.
+  FetchQueue::Id running =
+      0;  ///< 0: free. May name a request that was cancelled, while the rest of its answer is read away.
 };
 
 }  // namespace
@@ -64,7 +65,8 @@ struct FetchQueue::State {
         io.run();
         return;
       } catch (const std::exception&) {
-        // Out of memory while an answer was read. Every request that was running is given up, so that none waits for ever.
+        // Out of memory while an answer was read. Every request that was running is given up, so that none waits for
+        // ever.
         abandonAll();
       }
     }
@@ -167,9 +169,9 @@ struct FetchQueue::State {
   void begin(std::size_t slot, Id id, const std::string& target) {
     if (!slots[slot].link) {
       slots[slot].link = makeHttpLink(io, server, {options.timeout, options.maxBodyBytes, [this](std::size_t bytes) {
-                                          const std::lock_guard lock(mutex);
-                                          bytesReceived += bytes;
-                                        }});
+                                                     const std::lock_guard lock(mutex);
+                                                     bytesReceived += bytes;
+                                                   }});
       const std::lock_guard lock(mutex);
       ++connects;
     }
@@ -297,7 +299,8 @@ Result<std::unique_ptr<FetchQueue>> FetchQueue::open(const FetchOptions& options
   try {
     return std::unique_ptr<FetchQueue>(new FetchQueue(std::make_unique<State>(options, std::move(*server))));
   } catch (const std::exception& failure) {
-    return makeError(ErrorKind::Internal, "--server", std::string("cannot start the network thread: ") + failure.what());
+    return makeError(ErrorKind::Internal, "--server",
+                     std::string("cannot start the network thread: ") + failure.what());
   }
 }
 

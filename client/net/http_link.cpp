@@ -38,7 +38,8 @@ std::chrono::milliseconds readRetryAfter(std::string_view value) {
 
 Error describe(const beast::error_code& code, std::string_view doing) {
   const std::string text = std::string(doing) + ": " + code.message();
-  if (code == beast::error::timeout) return makeError(ErrorKind::Timeout, "", std::string(doing) + ": no answer in time");
+  if (code == beast::error::timeout)
+    return makeError(ErrorKind::Timeout, "", std::string(doing) + ": no answer in time");
   if (code == http::error::body_limit) return makeError(ErrorKind::TooLarge, "body", text);
   if (code == http::error::end_of_stream || code == http::error::partial_message) {
     return makeError(ErrorKind::Io, "", std::string(doing) + ": the server closed the connection");
@@ -110,9 +111,8 @@ class BeastLink final : public HttpLink, public std::enable_shared_from_this<Bea
           if (self->closed_) return;
           if (code) return self->fail(code, "cannot find " + self->server_.host);
           self->armTimer();
-          self->stream_.async_connect(found, [self](const beast::error_code& failed, const tcp::endpoint&) {
-            self->onConnect(failed);
-          });
+          self->stream_.async_connect(
+              found, [self](const beast::error_code& failed, const tcp::endpoint&) { self->onConnect(failed); });
         });
   }
 
@@ -153,8 +153,8 @@ class BeastLink final : public HttpLink, public std::enable_shared_from_this<Bea
     answer_.keep = parser_->keep_alive() && buffer_.size() == 0;
     auto message = parser_->release();
     answer_.response.status = static_cast<int>(message.result_int());
-    answer_.response.retryAfter = readRetryAfter({message[http::field::retry_after].data(),
-                                                  message[http::field::retry_after].size()});
+    answer_.response.retryAfter =
+        readRetryAfter({message[http::field::retry_after].data(), message[http::field::retry_after].size()});
     answer_.response.body = std::move(message.body());
     used_ = true;
     finish();

@@ -1,6 +1,6 @@
 #pragma once
-// One TCP connection to the server for its whole life: connect, one GET after another, close. Used from the fetch queue's I/O thread
-// only. The seam around Beast: nothing of it shows here.
+// One TCP connection to the server for its whole life: connect, one GET after another, close. Used from the fetch
+// queue's I/O thread only. The seam around Beast: nothing of it shows here.
 
 #include <chrono>
 #include <cstdint>

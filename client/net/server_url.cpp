@@ -16,8 +16,9 @@ Error wrong(std::string_view text, std::string_view why) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   }
   if (text.size() > kShown) shown += "...";
-  return makeError(ErrorKind::InvalidArgument, "--server",
-                   "\"" + shown + "\" " + std::string(why) + "; expected http://HOST[:PORT], e.g. http://127.0.0.1:8080");
+  return makeError(
+      ErrorKind::InvalidArgument, "--server",
+      "\"" + shown + "\" " + std::string(why) + "; expected http://HOST[:PORT], e.g. http://127.0.0.1:8080");
 }
 
 bool startsWithIgnoringCase(std::string_view text, std::string_view lowerPrefix) {
@@ -31,9 +32,7 @@ bool isHexDigit(char c) { return isDigit(c) || (c >= 'a' && c <= 'f') || (c >= '
 bool isNameCharacter(char c) {
   return isDigit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '.' || c == '_';
 }
-std::string bracketed(const std::string& host) {
-  return host.find(':') == std::string::npos ? host : "[" + host + "]";
-}
+std::string bracketed(const std::string& host) { return host.find(':') == std::string::npos ? host : "[" + host + "]"; }
 
 }  // namespace
 
@@ -41,9 +40,7 @@ std::string ServerUrl::authority() const {
   return port == 80 ? bracketed(host) : bracketed(host) + ":" + std::to_string(port);
 }
 
-std::string ServerUrl::origin() const {
-  return std::string(kScheme) + bracketed(host) + ":" + std::to_string(port);
-}
+std::string ServerUrl::origin() const { return std::string(kScheme) + bracketed(host) + ":" + std::to_string(port); }
 
 Result<ServerUrl> parseServerUrl(std::string_view text) {
   if (startsWithIgnoringCase(text, "https://")) return wrong(text, "asks for TLS, which this viewer does not speak");

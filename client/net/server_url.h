@@ -1,6 +1,6 @@
 #pragma once
-// Where a server is, as a user writes it: http://host[:port][/], host a name, an IPv4 address or an IPv6 address in brackets.
-// Thread-safe.
+// Where a server is, as a user writes it: http://host[:port][/], host a name, an IPv4 address or an IPv6 address in
+// brackets. Thread-safe.
 
 #include <cstdint>
 #include <string>

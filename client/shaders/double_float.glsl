@@ -1,65 +1,69 @@
-// Double-float: an unevaluated sum high + low of two floats, |low| <= ulp(high) / 2, about 48 bits. The twin of
+// Double-float: an unevaluated sum high + low of two floats, |low| <= ulp(high) / 2, about 48 bits; here three at once. The twin of
 // common/numerics/double_float.h (Joldes, Muller, Popescu 2017, "Tight and rigorous error bounds for basic building blocks of
 // double-word arithmetic"). Every intermediate is PRECISE: without it drivers simplify the error terms to 0.
+struct DoubleFloat3 {
+  vec3 high;
+  vec3 low;
+};
 
-// Knuth: high + low is exactly a + b, in any order of magnitude. Returns (high, low).
-vec2 twoSum(float a, float b) {
-  PRECISE float high = a + b;
-  PRECISE float bPart = high - a;
-  PRECISE float aPart = high - bPart;
-  PRECISE float aError = a - aPart;
-  PRECISE float bError = b - bPart;
-  PRECISE float low = aError + bError;
-  return vec2(high, low);
+// Knuth: high + low is exactly a + b, in any order of magnitude.
+DoubleFloat3 twoSum(vec3 a, vec3 b) {
+  PRECISE vec3 high = a + b;
+  PRECISE vec3 bPart = high - a;
+  PRECISE vec3 aPart = high - bPart;
+  PRECISE vec3 aError = a - aPart;
+  PRECISE vec3 bError = b - bPart;
+  PRECISE vec3 low = aError + bError;
+  return DoubleFloat3(high, low);
 }
 
 // Dekker: the same for |a| >= |b| (or a = 0).
-vec2 fastTwoSum(float a, float b) {
-  PRECISE float high = a + b;
-  PRECISE float bPart = high - a;
-  PRECISE float low = b - bPart;
-  return vec2(high, low);
+DoubleFloat3 fastTwoSum(vec3 a, vec3 b) {
+  PRECISE vec3 high = a + b;
+  PRECISE vec3 bPart = high - a;
+  PRECISE vec3 low = b - bPart;
+  return DoubleFloat3(high, low);
 }
 
 // Veltkamp: a = high + low with 12 bits each. Overflows above 2^115.
-vec2 splitFloat(float a) {
-  PRECISE float scaled = 4097.0 * a;
-  PRECISE float rest = scaled - a;
-  PRECISE float high = scaled - rest;
-  PRECISE float low = a - high;
-  return vec2(high, low);
+DoubleFloat3 splitFloat(vec3 a) {
+  PRECISE vec3 scaled = 4097.0 * a;
+  PRECISE vec3 rest = scaled - a;
+  PRECISE vec3 high = scaled - rest;
+  PRECISE vec3 low = a - high;
+  return DoubleFloat3(high, low);
 }
 
 // Dekker: high + low is exactly a * b while nothing over- or underflows. fma() is no substitute: drivers may round it twice.
-vec2 twoProd(float a, float b) {
-  vec2 as = splitFloat(a);
-  vec2 bs = splitFloat(b);
-  PRECISE float high = a * b;
-  PRECISE float highHigh = as.x * bs.x;
-  PRECISE float e1 = highHigh - high;
-  PRECISE float highLow = as.x * bs.y;
-  PRECISE float e2 = e1 + highLow;
-  PRECISE float lowHigh = as.y * bs.x;
-  PRECISE float e3 = e2 + lowHigh;
-  PRECISE float lowLow = as.y * bs.y;
-  PRECISE float low = e3 + lowLow;
-  return vec2(high, low);
+DoubleFloat3 twoProd(vec3 a, vec3 b) {
+  DoubleFloat3 as = splitFloat(a);
+  DoubleFloat3 bs = splitFloat(b);
+  PRECISE vec3 high = a * b;
+  PRECISE vec3 highHigh = as.high * bs.high;
+  PRECISE vec3 e1 = highHigh - high;
+  PRECISE vec3 highLow = as.high * bs.low;
+  PRECISE vec3 e2 = e1 + highLow;
+  PRECISE vec3 lowHigh = as.low * bs.high;
+  PRECISE vec3 e3 = e2 + lowHigh;
+  PRECISE vec3 lowLow = as.low * bs.low;
+  PRECISE vec3 low = e3 + lowLow;
+  return DoubleFloat3(high, low);
 }
 
 // DWPlusFP (algorithm 4): relative error <= 2 u^2.
-vec2 addFloat(vec2 a, float b) {
-  vec2 s = twoSum(a.x, b);
-  PRECISE float low = a.y + s.y;
-  return fastTwoSum(s.x, low);
+DoubleFloat3 addFloat(DoubleFloat3 a, vec3 b) {
+  DoubleFloat3 s = twoSum(a.high, b);
+  PRECISE vec3 low = a.low + s.low;
+  return fastTwoSum(s.high, low);
 }
 
 // AccurateDWPlusDW (algorithm 6) of a and -b, rounded to one float: the 20 operations that cancel safely, less the last two.
-float subtractToFloat(vec2 a, vec2 b) {
-  vec2 s = twoSum(a.x, -b.x);
-  vec2 t = twoSum(a.y, -b.y);
-  PRECISE float c = s.y + t.x;
-  vec2 v = fastTwoSum(s.x, c);
-  PRECISE float w = t.y + v.y;
-  PRECISE float sum = v.x + w;
+vec3 subtractToFloat(DoubleFloat3 a, DoubleFloat3 b) {
+  DoubleFloat3 s = twoSum(a.high, -b.high);
+  DoubleFloat3 t = twoSum(a.low, -b.low);
+  PRECISE vec3 c = s.low + t.high;
+  DoubleFloat3 v = fastTwoSum(s.high, c);
+  PRECISE vec3 w = t.low + v.low;
+  PRECISE vec3 sum = v.high + w;
   return sum;
 }

@@ -27,13 +27,11 @@ vec3 relativePosition() {
 uniform vec3 originHigh, originLow;  // metres; at most 45 bits, so that origin + offset * step is exact
 uniform vec3 cameraHigh, cameraLow;
 
-float relativeCoordinate(int axis) {
-  PRECISE float offsetMeters = float(vertexOffset[axis]) * stepMeters;
-  vec2 position = addFloat(vec2(originHigh[axis], originLow[axis]), offsetMeters);
-  return subtractToFloat(position, vec2(cameraHigh[axis], cameraLow[axis]));
+vec3 relativePosition() {
+  PRECISE vec3 offsetMeters = vec3(vertexOffset.xyz) * stepMeters;
+  DoubleFloat3 position = addFloat(DoubleFloat3(originHigh, originLow), offsetMeters);
+  return subtractToFloat(position, DoubleFloat3(cameraHigh, cameraLow));
 }
-
-vec3 relativePosition() { return vec3(relativeCoordinate(0), relativeCoordinate(1), relativeCoordinate(2)); }
 #endif
 
 #ifdef PLACEMENT_FLOAT32

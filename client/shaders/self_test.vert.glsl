@@ -1,31 +1,31 @@
-// Asks this GPU what its arithmetic does. Everything comes from attributes, so that no compiler can compute it ahead.
+// Asks this GPU what its arithmetic does. Everything comes from attributes, so that no compiler can compute it ahead. With
+// UNQUALIFIED the same is asked without PRECISE: in a program of its own, or common subexpressions would lend it the qualified ones.
+#ifdef UNQUALIFIED
+#undef PRECISE
+#define PRECISE
+#endif
 #include "double_float.glsl"
 
 layout(location = 0) in vec2 pair;
 layout(location = 1) in ivec2 integers;
 layout(location = 2) in uvec4 offset;
 
-out vec4 sums;         // TwoSum with PRECISE; without
+out vec2 sums;         // TwoSum
 out vec4 products;     // TwoProd by Dekker's split; by fma()
 flat out ivec2 whole;  // integers.x + offset.x, and the bits of its float
 out vec2 relative;     // that float; minus pair.x
 
-vec2 twoSumUnqualified(float a, float b) {
-  float high = a + b;
-  float bPart = high - a;
-  float aPart = high - bPart;
-  return vec2(high, (a - aPart) + (b - bPart));
-}
-
 void main() {
-  sums = vec4(twoSum(pair.x, pair.y), twoSumUnqualified(pair.x, pair.y));
+  DoubleFloat3 sum3 = twoSum(vec3(pair.x), vec3(pair.y));
+  DoubleFloat3 product3 = twoProd(vec3(pair.x), vec3(pair.y));
+  sums = vec2(sum3.high.x, sum3.low.x);
   PRECISE float product = pair.x * pair.y;
 #ifdef HAS_PRECISE
   PRECISE float error = fma(pair.x, pair.y, -product);
 #else
   float error = 0.0;
 #endif
-  products = vec4(twoProd(pair.x, pair.y), product, error);
+  products = vec4(product3.high.x, product3.low.x, product, error);
   int sum = integers.x + int(offset.x);
   PRECISE float converted = float(sum);
   PRECISE float difference = converted - pair.x;

@@ -1,6 +1,5 @@
 #include "client/tiles/disk_cache.h"
 
-#include <sqlite3.h>
 #include <sys/stat.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -13,6 +12,8 @@
 #include <thread>
 #include <unordered_map>
 #include <utility>
+
+#include "client/tiles/sqlite_statement.h"
 
 namespace terrane {
 namespace {
@@ -36,61 +37,6 @@ std::int64_t contentHash(std::span<const std::uint8_t> content) {
 
 bool isDamage(int code) { return (code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB; }
 
-struct CloseDatabase {
-  void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
-};
-struct FinalizeStatement {
-  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-};
-using Database = std::unique_ptr<sqlite3, CloseDatabase>;
-
-/// A prepared statement, reset after each use.
-class Statement {
- public:
-  Statement() = default;
-  Statement(sqlite3* database, const char* sql) {
-    sqlite3_stmt* raw = nullptr;
-    code_ = sqlite3_prepare_v3(database, sql, -1, SQLITE_PREPARE_PERSISTENT, &raw, nullptr);
-    statement_.reset(raw);
-  }
-  int code() const { return code_; }
-  Statement& text(int index, std::string_view value) {
-    sqlite3_bind_text(statement_.get(), index, value.data(), static_cast<int>(value.size()), SQLITE_STATIC);
-    return *this;
-  }
-  Statement& blob(int index, std::span<const std::uint8_t> value) {
-    sqlite3_bind_blob(statement_.get(), index, value.empty() ? static_cast<const void*>("") : value.data(),
-                      static_cast<int>(value.size()), SQLITE_STATIC);
-    return *this;
-  }
-  Statement& integer(int index, std::int64_t value) {
-    sqlite3_bind_int64(statement_.get(), index, value);
-    return *this;
-  }
-  bool step() {
-    if (statement_) code_ = sqlite3_step(statement_.get());
-    return code_ == SQLITE_ROW;
-  }
-  std::int64_t integerColumn(int column) const { return sqlite3_column_int64(statement_.get(), column); }
-  std::span<const std::uint8_t> blobColumn(int column) const {
-    const void* data = sqlite3_column_blob(statement_.get(), column);
-    return {static_cast<const std::uint8_t*>(data), static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
-  }
-  std::string textColumn(int column) const {
-    const auto bytes = blobColumn(column);
-    return std::string(bytes.begin(), bytes.end());
-  }
-  int reset() {
-    sqlite3_reset(statement_.get());
-    sqlite3_clear_bindings(statement_.get());
-    return code_;
-  }
-
- private:
-  std::unique_ptr<sqlite3_stmt, FinalizeStatement> statement_;
-  int code_ = SQLITE_OK;
-};
-
 /// Which file a path leads to now; 0 if none.
 ino_t fileIdentity(const std::string& file) {
   struct stat info {};
@@ -103,9 +49,9 @@ struct DiskCache::State {
   std::string file;
   std::size_t budget = 0;
   mutable std::mutex mutex;
-  Database database;
+  SqliteDatabase database;
   ino_t identity = 0;
-  Statement select, insertMedia, insertUsage, removeMedia, removeUsage, touch, total, oldest;
+  SqliteStatement select, insertMedia, insertUsage, removeMedia, removeUsage, touch, total, oldest;
   std::unordered_map<std::string, std::int64_t> touches;
   std::size_t stored = 0;
   std::int64_t lastTick = 0;
@@ -118,8 +64,8 @@ struct DiskCache::State {
 
   int openFile() {
     sqlite3* raw = nullptr;
-    const int opened = sqlite3_open_v2(file.c_str(), &raw,
-                                       SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
+    const int opened =
+        sqlite3_open_v2(file.c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
     database.reset(raw);
     if (opened != SQLITE_OK) return opened;
     sqlite3_extended_result_codes(raw, 1);
@@ -131,7 +77,7 @@ struct DiskCache::State {
   int execute(const std::string& sql) { return sqlite3_exec(database.get(), sql.c_str(), nullptr, nullptr, nullptr); }
 
   std::int64_t pragma(const char* sql, int& code) {
-    Statement query(database.get(), sql);
+    SqliteStatement query(database.get(), sql);
     const std::int64_t value = query.step() ? query.integerColumn(0) : 0;
     code = query.code() == SQLITE_ROW ? SQLITE_OK : query.code();
     return value;
@@ -153,8 +99,8 @@ struct DiskCache::State {
   Opened prepare() {
     int code = openFile();
     if (code != SQLITE_OK) return isDamage(code) ? Opened::Damaged : Opened::Failed;
-    // The marks are written before the tables: with this order of reading, another viewer that is making the file cannot be
-    // mistaken for a stranger.
+    // The marks are written before the tables: with this order of reading, another viewer that is making the file
+    // cannot be mistaken for a stranger.
     const std::int64_t tables = pragma("SELECT count(*) FROM sqlite_master", code);
     if (code != SQLITE_OK) return isDamage(code) ? Opened::Damaged : Opened::Failed;
     const std::int64_t owner = pragma("PRAGMA application_id", code);
@@ -164,8 +110,9 @@ struct DiskCache::State {
     // WAL lets another viewer read while this one writes; a power cut may lose the last tiles, which are fetched again.
     code = enterWriteAheadMode();
     if (code != SQLITE_OK) return isDamage(code) ? Opened::Damaged : Opened::Failed;
-    code = execute("PRAGMA synchronous=NORMAL; PRAGMA cache_size=-2048; PRAGMA application_id=" +
-                   std::to_string(kApplicationId) + "; PRAGMA user_version=" + std::to_string(kFormatVersion) + ";" + kSchema);
+    code = execute(
+        "PRAGMA synchronous=NORMAL; PRAGMA cache_size=-2048; PRAGMA application_id=" + std::to_string(kApplicationId) +
+        "; PRAGMA user_version=" + std::to_string(kFormatVersion) + ";" + kSchema);
     if (code == SQLITE_OK) code = prepareStatements();
     if (code == SQLITE_OK) code = countBytes();
     if (code == SQLITE_OK) return Opened::Yes;
@@ -174,15 +121,18 @@ struct DiskCache::State {
 
   int prepareStatements() {
     sqlite3* raw = database.get();
-    select = Statement(raw, "SELECT content, hash FROM media JOIN usage USING(key) WHERE key=?1");
-    insertMedia = Statement(raw, "INSERT OR REPLACE INTO media(key, content) VALUES(?1, ?2)");
-    insertUsage = Statement(raw, "INSERT OR REPLACE INTO usage(key, bytes, hash, lastUse) VALUES(?1, ?2, ?3, ?4)");
-    removeMedia = Statement(raw, "DELETE FROM media WHERE key=?1");
-    removeUsage = Statement(raw, "DELETE FROM usage WHERE key=?1");
-    touch = Statement(raw, "UPDATE usage SET lastUse=?2 WHERE key=?1 AND lastUse<?2");
-    total = Statement(raw, "SELECT coalesce(sum(bytes), 0), coalesce(max(lastUse), 0) FROM usage WHERE lastUse<=?1");
-    oldest = Statement(raw, "SELECT key, bytes FROM usage ORDER BY lastUse LIMIT 64");
-    for (const Statement* statement : {&select, &insertMedia, &insertUsage, &removeMedia, &removeUsage, &touch, &total, &oldest}) {
+    select = SqliteStatement(raw, "SELECT content, hash FROM media JOIN usage USING(key) WHERE key=?1");
+    insertMedia = SqliteStatement(raw, "INSERT OR REPLACE INTO media(key, content) VALUES(?1, ?2)");
+    insertUsage =
+        SqliteStatement(raw, "INSERT OR REPLACE INTO usage(key, bytes, hash, lastUse) VALUES(?1, ?2, ?3, ?4)");
+    removeMedia = SqliteStatement(raw, "DELETE FROM media WHERE key=?1");
+    removeUsage = SqliteStatement(raw, "DELETE FROM usage WHERE key=?1");
+    touch = SqliteStatement(raw, "UPDATE usage SET lastUse=?2 WHERE key=?1 AND lastUse<?2");
+    total =
+        SqliteStatement(raw, "SELECT coalesce(sum(bytes), 0), coalesce(max(lastUse), 0) FROM usage WHERE lastUse<=?1");
+    oldest = SqliteStatement(raw, "SELECT key, bytes FROM usage ORDER BY lastUse LIMIT 64");
+    for (const SqliteStatement* statement :
+         {&select, &insertMedia, &insertUsage, &removeMedia, &removeUsage, &touch, &total, &oldest}) {
       if (statement->code() != SQLITE_OK) return statement->code();
     }
     return SQLITE_OK;
@@ -196,16 +146,18 @@ struct DiskCache::State {
   }
 
   void closeDatabase() {
-    for (Statement* statement : {&select, &insertMedia, &insertUsage, &removeMedia, &removeUsage, &touch, &total, &oldest}) {
-      *statement = Statement();
+    for (SqliteStatement* statement :
+         {&select, &insertMedia, &insertUsage, &removeMedia, &removeUsage, &touch, &total, &oldest}) {
+      *statement = SqliteStatement();
     }
     database.reset();
   }
 
   /// Microseconds, never the same twice, so that two viewers agree on what is old.
   std::int64_t tick() {
-    const std::int64_t now = std::chrono::duration_cast<std::chrono::microseconds>(
-                                 std::chrono::system_clock::now().time_since_epoch()).count();
+    const std::int64_t now =
+        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+            .count();
     return lastTick = std::max(lastTick + 1, now);
   }
 
@@ -231,7 +183,8 @@ struct DiskCache::State {
     }
   }
 
-  /// The new name; empty on failure. Never overwrites an earlier one. The log goes along: a database is not whole without it.
+  /// The new name; empty on failure. Never overwrites an earlier one. The log goes along: a database is not whole
+  /// without it.
   std::string moveAside() {
     namespace fs = std::filesystem;
     for (int number = 1; number < 1000; ++number) {
@@ -295,13 +248,15 @@ struct DiskCache::State {
     return code == SQLITE_DONE ? SQLITE_OK : code;
   }
 
-  /// Deletes the least recently used down to 7/8 of the budget, so that not every put pays for it. Inside a transaction.
+  /// Deletes the least recently used down to 7/8 of the budget, so that not every put pays for it. Inside a
+  /// transaction.
   int trim() {
     // Another viewer may have stored or deleted: count afresh before anything goes.
     if (const int code = countBytes(); code != SQLITE_OK) return code;
     while (stored > budget - budget / 8) {
       std::vector<std::pair<std::string, std::size_t>> victims;
-      while (oldest.step()) victims.emplace_back(oldest.textColumn(0), static_cast<std::size_t>(oldest.integerColumn(1)));
+      while (oldest.step())
+        victims.emplace_back(oldest.textColumn(0), static_cast<std::size_t>(oldest.integerColumn(1)));
       if (const int code = oldest.reset(); code != SQLITE_DONE) return code;
       if (victims.empty()) return SQLITE_OK;
       for (const auto& [key, bytes] : victims) {
@@ -336,7 +291,8 @@ Result<std::unique_ptr<DiskCache>> DiskCache::open(const std::string& file, std:
       if (state->broken) return makeError(ErrorKind::Io, file, state->notice);
       break;
     case State::Opened::Foreign:
-      return makeError(ErrorKind::Io, file, "is a database, but no tile cache of this version: choose another file or move it away");
+      return makeError(ErrorKind::Io, file,
+                       "is a database, but no tile cache of this version: choose another file or move it away");
     case State::Opened::Failed: {
       const std::string why = state->database ? sqlite3_errmsg(state->database.get()) : "out of memory";
       return makeError(ErrorKind::Io, file, "cannot open the tile cache: " + why);

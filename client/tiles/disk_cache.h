@@ -1,10 +1,11 @@
 #pragma once
-// Tiles kept on disk between runs: one SQLite file, table media(key, content), bounded in bytes, least recently used out first. Keys are
-// request targets, which name a revision (a hash of all that shapes the bytes), so that what is stored never goes stale. Thread-safe;
-// calls take tens of microseconds, but may wait for the disk: not for the GL thread. Two viewers may share a file.
+// Tiles kept on disk between runs: one SQLite file, table media(key, content), bounded in bytes, least recently used
+// out first. Keys are request targets, which name a revision (a hash of all that shapes the bytes), so that what is
+// stored never goes stale. Thread-safe; calls take tens of microseconds, but may wait for the disk: not for the GL
+// thread. Two viewers may share a file.
 //
-// Nothing here can fail in a way that stops a viewer: a damaged file is renamed aside and a new one begun, damaged content is
-// deleted and fetched again, a full disk keeps what it has; notice() says so in one line.
+// Nothing here can fail in a way that stops a viewer: a damaged file is renamed aside and a new one begun, damaged
+// content is deleted and fetched again, a full disk keeps what it has; notice() says so in one line.
 
 #include <cstdint>
 #include <memory>
@@ -20,8 +21,8 @@ namespace terrane {
 
 class DiskCache {
  public:
-  /// Makes the file and its folders if need be. Errors (Io) name the file: it cannot be opened or written, or it is somebody else's
-  /// database.
+  /// Makes the file and its folders if need be. Errors (Io) name the file: it cannot be opened or written, or it is
+  /// somebody else's database.
   static Result<std::unique_ptr<DiskCache>> open(const std::string& file, std::size_t budgetBytes);
   ~DiskCache();
   DiskCache(const DiskCache&) = delete;

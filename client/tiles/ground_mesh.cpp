@@ -8,8 +8,8 @@
 namespace terrane {
 namespace {
 
-/// Beside the mesh by less than this part of a triangle is on its edge: rounding to the lattice moves a vertex by at most half a step
-/// of some 500 in a cell.
+/// Beside the mesh by less than this part of a triangle is on its edge: rounding to the lattice moves a vertex by at
+/// most half a step of some 500 in a cell.
 constexpr double kEdgeTolerance = 0.05;
 
 double cross2(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
@@ -74,7 +74,8 @@ std::size_t GroundMesh::bytes() const noexcept {
 }
 
 glm::dvec3 GroundMesh::vertex(const Ray& ray, int i, int j) const {
-  const std::size_t at = 3 * (static_cast<std::size_t>(j) * (static_cast<std::size_t>(cells_) + 1) + static_cast<std::size_t>(i));
+  const std::size_t at =
+      3 * (static_cast<std::size_t>(j) * (static_cast<std::size_t>(cells_) + 1) + static_cast<std::size_t>(i));
   return ray.originFromAnchor + ray.step * glm::dvec3(offsets_[at], offsets_[at + 1], offsets_[at + 2]);
 }
 
@@ -84,8 +85,8 @@ GroundMesh::Hit GroundMesh::meetCell(const Ray& ray, int i, int j) const {
   const auto cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(i);
   const bool rising = (diagonals_[cell / 8] >> (cell % 8)) & 1u;
   using Triple = std::array<std::size_t, 3>;
-  const std::array<Triple, 2> triangles =
-      rising ? std::array<Triple, 2>{Triple{0, 1, 3}, Triple{0, 3, 2}} : std::array<Triple, 2>{Triple{0, 1, 2}, Triple{1, 3, 2}};
+  const std::array<Triple, 2> triangles = rising ? std::array<Triple, 2>{Triple{0, 1, 3}, Triple{0, 3, 2}}
+                                                 : std::array<Triple, 2>{Triple{0, 1, 2}, Triple{1, 3, 2}};
 
   Hit best;
   for (const Triple& triangle : triangles) {
@@ -108,7 +109,8 @@ GroundMesh::Hit GroundMesh::meetCell(const Ray& ray, int i, int j) const {
   return best;
 }
 
-std::optional<double> GroundMesh::heightMeters(const glm::dvec3& direction, double u, double v, double radiusMeters) const {
+std::optional<double> GroundMesh::heightMeters(const glm::dvec3& direction, double u, double v,
+                                               double radiusMeters) const {
   if (empty()) return std::nullopt;
   Ray ray;
   ray.direction = direction;

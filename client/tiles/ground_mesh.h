@@ -1,7 +1,7 @@
 #pragma once
-// What stays of a tile's mesh in main memory once it is on the GPU: the lattice offsets of its grid vertices in grid order and the
-// diagonal of every cell, 6 bytes a vertex. Answers how high the drawn triangle under a direction is. Body frame, metres; const is
-// thread-safe.
+// What stays of a tile's mesh in main memory once it is on the GPU: the lattice offsets of its grid vertices in grid
+// order and the diagonal of every cell, 6 bytes a vertex. Answers how high the drawn triangle under a direction is.
+// Body frame, metres; const is thread-safe.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -21,8 +21,8 @@ class GroundMesh {
   bool empty() const noexcept { return cells_ == 0; }
   std::size_t bytes() const noexcept;
 
-  /// Height above a sphere of radiusMeters of the point where the ray from the body's centre meets the mesh. direction: unit;
-  /// (u, v): where it falls in the tile, 0..1, which only tells where to look first. Error <= 4 ulp of the radius
+  /// Height above a sphere of radiusMeters of the point where the ray from the body's centre meets the mesh. direction:
+  /// unit; (u, v): where it falls in the tile, 0..1, which only tells where to look first. Error <= 4 ulp of the radius
   /// (ground_mesh_test). Empty if the mesh is, or if the ray passes it by.
   std::optional<double> heightMeters(const glm::dvec3& direction, double u, double v, double radiusMeters) const;
 
@@ -38,8 +38,8 @@ class GroundMesh {
   int cells_ = 0;
   int stepExponent_ = 0;
   LatticePoint origin_{0};
-  std::vector<std::uint16_t> offsets_;    ///< 3 a vertex; vertex (i, j) is number j * (cells + 1) + i
-  std::vector<std::uint8_t> diagonals_;   ///< a bit a cell: set if the diagonal joins corners 00 and 11
+  std::vector<std::uint16_t> offsets_;   ///< 3 a vertex; vertex (i, j) is number j * (cells + 1) + i
+  std::vector<std::uint8_t> diagonals_;  ///< a bit a cell: set if the diagonal joins corners 00 and 11
 };
 
 }  // namespace terrane

@@ -15,7 +15,8 @@ constexpr double kBeforeAllTiles = -1e9;
 }
 
 struct SceneLoader::State : std::enable_shared_from_this<State> {
-  State(FetchQueue& queue, DiskCache* disk, TilePipeline& pool, const PipelineOptions& chosen, std::function<void()> onNews)
+  State(FetchQueue& queue, DiskCache* disk, TilePipeline& pool, const PipelineOptions& chosen,
+        std::function<void()> onNews)
       : fetch(queue),
         cache(disk),
         workers(pool),
@@ -28,7 +29,8 @@ struct SceneLoader::State : std::enable_shared_from_this<State> {
     fetch.fetch(
         std::string(kSceneTarget), kBeforeAllTiles,
         [self = shared_from_this()](FetchResponse response) {
-          self->workers.post([self, answer = std::make_shared<FetchResponse>(std::move(response))] { self->onResponse(*answer); });
+          self->workers.post(
+              [self, answer = std::make_shared<FetchResponse>(std::move(response))] { self->onResponse(*answer); });
         },
         delay);
   }
@@ -52,7 +54,9 @@ struct SceneLoader::State : std::enable_shared_from_this<State> {
       const std::lock_guard lock(mutex);
       trouble = problem.empty() ? "" : fetch.origin() + std::string(kSceneTarget) + ": " + problem;
       const int doublings = std::min(failures++, 16);
-      if (!queueHolds) delay = std::max(response.retryAfter, std::min(options.longestBackoff, options.firstBackoff * (1 << doublings)));
+      if (!queueHolds)
+        delay =
+            std::max(response.retryAfter, std::min(options.longestBackoff, options.firstBackoff * (1 << doublings)));
     }
     request(delay);
     wake();

@@ -1,6 +1,6 @@
 #pragma once
-// Brings scene.json: from the server, again and again with growing pauses until it is there; meanwhile, if the server does not answer,
-// from the disk cache. Thread-safe.
+// Brings scene.json: from the server, again and again with growing pauses until it is there; meanwhile, if the server
+// does not answer, from the disk cache. Thread-safe.
 
 #include <chrono>
 #include <functional>

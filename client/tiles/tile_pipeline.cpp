@@ -118,7 +118,8 @@ struct TilePipeline::State {
     order.stage = Stage::Fetching;
     order.fromCache = false;
     order.fetchId = fetch.fetch(
-        order.target, order.priority, [this, id](FetchResponse response) { onResponse(id, std::move(response)); }, delay);
+        order.target, order.priority, [this, id](FetchResponse response) { onResponse(id, std::move(response)); },
+        delay);
   }
 
   void enqueueEncoded(Id id, Order& order, std::vector<std::uint8_t> encoded) {
@@ -208,19 +209,20 @@ struct TilePipeline::State {
     auto tile = decodeOne(encoded, path);
     const double spentMs = std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
     if (!tile && fromCache) cache->remove(target);
-    const TilePtr shared = tile ? *tile : nullptr;
+    const bool decoded = tile.has_value();
+    const std::size_t bytes = decoded ? meshBytes(**tile) : 0;
 
     lock.lock();
     --decoding;
     decodeMs += spentMs;
     bool news = false;
     if (const auto found = orders.find(id); found != orders.end()) {
-      if (shared) {
-        found->second.tile = shared;
-        found->second.tileBytes = meshBytes(*shared);
+      if (decoded) {
+        found->second.tile = std::move(*tile);
+        found->second.tileBytes = bytes;
         found->second.stage = Stage::Ready;
         ready.emplace(found->second.priority, id);
-        readyBytes += found->second.tileBytes;
+        readyBytes += bytes;
         trouble.clear();
         news = true;
       } else {
@@ -230,7 +232,7 @@ struct TilePipeline::State {
     lock.unlock();
     if (news) wake();
     // Only what decodes is kept, and only after the frame has it: the disk can wait.
-    if (shared && cache && !fromCache) cache->put(target, encoded);
+    if (decoded && cache && !fromCache) cache->put(target, encoded);
     lock.lock();
   }
 
@@ -254,7 +256,8 @@ struct TilePipeline::State {
   std::vector<std::thread> workers;
 };
 
-TilePipeline::TilePipeline(FetchQueue& fetch, DiskCache* cache, const PipelineOptions& options, std::function<void()> wake)
+TilePipeline::TilePipeline(FetchQueue& fetch, DiskCache* cache, const PipelineOptions& options,
+                           std::function<void()> wake)
     : state_(std::make_unique<State>(fetch, cache, options, std::move(wake))) {
   for (int i = 0; i < std::clamp(options.decodeThreads, 1, 64); ++i) {
     state_->workers.emplace_back([state = state_.get()] { state->work(); });

@@ -4,7 +4,8 @@
 //                \-> once more after a pause            \-> failed, gone (takeLost)
 // in order of priority at every stage. Thread-safe; the callback tells that something new is there to be taken.
 //
-// What is ready is bounded in bytes: decoding pauses until the GL thread has taken some, so that a slow frame cannot fill the memory.
+// What is ready is bounded in bytes: decoding pauses until the GL thread has taken some, so that a slow frame cannot
+// fill the memory.
 
 #include <chrono>
 #include <cstdint>

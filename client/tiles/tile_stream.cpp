@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <queue>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "client/net/fetch_queue.h"
 #include "client/tiles/disk_cache.h"
-#include "client/tiles/ground_mesh.h"
 #include "client/tiles/scene_loader.h"
 #include "client/tiles/tile_pipeline.h"
-#include "common/tiling/cube_sphere.h"
+#include "client/tiles/tile_residency.h"
 #include "proto/tile_url.h"
 
 namespace terrane {
@@ -31,26 +27,20 @@ double fetchPriority(const WantedTile& wanted) {
   return wanted.path.level() + 1.0 / (1.0 + error);
 }
 
-/// What the GL thread knows of one tile. Residency and the request for it are two things: a tile of an old revision is drawn while its
-/// successor is on its way.
-struct Entry {
-  enum class Request : std::uint8_t { None, Ordered, Uploading, Failed };
-  Request request = Request::None;
+/// A tile that is wanted, or was just now, and is not resident in the revision in force. (Residency and the request are
+/// two things: a tile of an old revision is drawn while its successor is on its way.)
+struct Request {
+  enum class Stage : std::uint8_t { Ordered, Uploading, Failed };
+  Stage stage = Stage::Ordered;
   TilePipeline::Id order = 0;
   double priority = 0;
-  std::uint64_t wantedCall = 0;
-  Clock::time_point wantedTime;
-
-  bool resident = false;
-  std::string revision;  ///< of the resident mesh
-  ResidentTile info;
-  GroundMesh ground;
-  std::weak_ptr<const Tile> mesh;
-  std::size_t bytes = 0;
-  std::uint64_t drawnMark = 0;
+  LastWanted wanted;
+  std::string revision;
 };
 
-std::string inSeconds(milliseconds time) { return std::to_string(std::chrono::ceil<std::chrono::seconds>(time).count()) + " s"; }
+std::string inSeconds(milliseconds time) {
+  return std::to_string(std::chrono::ceil<std::chrono::seconds>(time).count()) + " s";
+}
 
 }  // namespace
 
@@ -69,16 +59,16 @@ struct TileStream::State {
   int sameRevisionAgain = 0;
   const BodyInfo* body = nullptr;
 
-  std::unordered_map<FacePath, Entry> entries;
+  std::unordered_map<FacePath, Request> requests;
   std::unordered_map<TilePipeline::Id, FacePath> orders;
-  std::unordered_map<FacePath, int> residentBelow;  ///< how many resident descendants a path has
-  std::vector<int> residentAtLevel = std::vector<int>(FacePath::kMaxLevel + 1);
-  std::size_t residentCount = 0, residentBytes = 0, uploading = 0, failed = 0;
-  std::uint64_t call = 0, drawMark = 0, cancelled = 0, evicted = 0;
+  TileResidency residency;
+  std::size_t uploading = 0, failed = 0;
+  std::uint64_t call = 0, cancelled = 0, evicted = 0;
   std::string lastFailure;
 
   ~State() {
-    // Workers use the network and the network calls the workers: first the one stops, then the other, then both are freed.
+    // Workers use the network and the network calls the workers: first the one stops, then the other, then both are
+    // freed.
     if (pipeline) pipeline->stop();
     fetch.reset();
     loader.reset();
@@ -95,16 +85,15 @@ struct TileStream::State {
     for (const TilePipeline::Lost& lost : pipeline->takeLost()) {
       const auto found = orders.find(lost.id);
       if (found == orders.end()) continue;
-      Entry& entry = entries.at(found->second);
-      entry.order = 0;
-      entry.request = lost.gone ? Entry::Request::None : Entry::Request::Failed;
-      orders.erase(found);
       if (lost.gone) {
+        requests.erase(found->second);
         if (!std::exchange(sceneStale, true)) loader->load();
       } else {
+        requests.at(found->second).stage = Request::Stage::Failed;
         ++failed;
         lastFailure = lost.error.text();
       }
+      orders.erase(found);
     }
   }
 
@@ -137,19 +126,14 @@ struct TileStream::State {
   void cancelOrders() {
     for (const auto& [id, path] : orders) {
       pipeline->cancel(id);
-      Entry& entry = entries.at(path);
-      entry.request = Entry::Request::None;
+      requests.erase(path);
       ++cancelled;
-      if (!entry.resident) entries.erase(path);
     }
     orders.clear();
   }
 
   void forgetFailures() {
-    for (auto at = entries.begin(); at != entries.end();) {
-      if (at->second.request == Entry::Request::Failed) at->second.request = Entry::Request::None;
-      at = !at->second.resident && at->second.request == Entry::Request::None ? entries.erase(at) : std::next(at);
-    }
+    std::erase_if(requests, [](const auto& item) { return item.second.stage == Request::Stage::Failed; });
     failed = 0;
     lastFailure.clear();
   }
@@ -159,158 +143,83 @@ struct TileStream::State {
     body = &chosen;
     if (!other) return;
     cancelOrders();
-    entries.clear();
-    residentBelow.clear();
-    std::fill(residentAtLevel.begin(), residentAtLevel.end(), 0);
-    residentCount = residentBytes = uploading = failed = 0;
+    requests.clear();
+    residency.clear();
+    uploading = failed = 0;
     sceneStale = bodyMissing = false;
     lastFailure.clear();
   }
 
-  bool mayOrder() const { return body && !sceneStale && !bodyMissing; }
-
-  void wantOne(const WantedTile& wanted, Clock::time_point now) {
-    if (!mayOrder() && !entries.contains(wanted.path)) return;
-    Entry& entry = entries[wanted.path];
-    entry.wantedCall = call;
-    entry.wantedTime = now;
-    const double priority = fetchPriority(wanted);
-    if (entry.request == Entry::Request::Ordered) {
+  void wantOne(const WantedTile& tile, const LastWanted& now) {
+    const std::string* revision = residency.touch(tile.path, now);
+    if (revision && *revision == body->revision) return;
+    const double priority = fetchPriority(tile);
+    if (const auto found = requests.find(tile.path); found != requests.end()) {
+      Request& request = found->second;
+      request.wanted = now;
       // A camera in motion changes every error a little in every frame; only what could change the order is passed on.
-      if (std::abs(priority - entry.priority) > 0.02) {
-        entry.priority = priority;
-        pipeline->setPriority(entry.order, priority);
+      if (request.stage == Request::Stage::Ordered && std::abs(priority - request.priority) > 0.02) {
+        request.priority = priority;
+        pipeline->setPriority(request.order, priority);
       }
       return;
     }
-    const bool there = entry.resident && entry.revision == body->revision;
-    if (there || entry.request != Entry::Request::None || !mayOrder()) return;
-    entry.priority = priority;
-    entry.order = pipeline->order(wanted.path, tileTarget({body->revision, body->name, wanted.path}), priority);
-    entry.request = Entry::Request::Ordered;
-    orders.emplace(entry.order, wanted.path);
+    if (sceneStale || bodyMissing) return;
+    const auto order = pipeline->order(tile.path, tileTarget({body->revision, body->name, tile.path}), priority);
+    requests.emplace(tile.path, Request{Request::Stage::Ordered, order, priority, now, body->revision});
+    orders.emplace(order, tile.path);
   }
 
-  bool inGrace(const Entry& entry, Clock::time_point now) const {
-    return call - entry.wantedCall < kGraceCalls && now - entry.wantedTime < options.graceTime;
+  /// Wanted now, or so recently that it may be wanted again.
+  bool stillWanted(const LastWanted& wanted, Clock::time_point now) const {
+    return wanted.call == call || (call - wanted.call < kGraceCalls && now - wanted.time < options.graceTime);
   }
 
   void dropUnwanted(Clock::time_point now) {
     for (auto at = orders.begin(); at != orders.end();) {
-      const auto found = entries.find(at->second);
-      Entry& entry = found->second;
-      if (entry.wantedCall == call || inGrace(entry, now)) {
-        if (entry.wantedCall != call && entry.priority < kUnwanted) {
-          entry.priority += kUnwanted;
-          pipeline->setPriority(at->first, entry.priority);
+      Request& request = requests.at(at->second);
+      if (stillWanted(request.wanted, now)) {
+        if (request.wanted.call != call && request.priority < kUnwanted) {
+          request.priority += kUnwanted;
+          pipeline->setPriority(at->first, request.priority);
         }
         ++at;
         continue;
       }
       pipeline->cancel(at->first);
       ++cancelled;
-      entry.request = Entry::Request::None;
-      if (!entry.resident) entries.erase(found);
+      requests.erase(at->second);
       at = orders.erase(at);
     }
   }
 
-  void setResident(const TilePtr& tile, std::size_t gpuBytes) {
-    const FacePath& path = tile->metadata.path;
-    const auto found = entries.find(path);
-    if (found == entries.end() || found->second.request != Entry::Request::Uploading) return;  // of a body that was left
-    Entry& entry = found->second;
-    entry.request = Entry::Request::None;
+  std::vector<TilePtr> takeDecoded(std::size_t maxBytes) {
+    std::vector<TilePtr> tiles;
+    for (TilePipeline::Ready& ready : pipeline->takeReady(maxBytes)) {
+      const auto found = orders.find(ready.id);
+      if (found == orders.end()) continue;
+      requests.at(found->second).stage = Request::Stage::Uploading;
+      orders.erase(found);
+      ++uploading;
+      tiles.push_back(std::move(ready.tile));
+    }
+    return tiles;
+  }
+
+  void markResident(const TilePtr& tile, std::size_t gpuBytes) {
+    const auto found = requests.find(tile->metadata.path);
+    if (found == requests.end() || found->second.stage != Request::Stage::Uploading) return;  // of a body that was left
     --uploading;
-    residentBytes -= entry.bytes;
-    if (!std::exchange(entry.resident, true)) {
-      ++residentCount;
-      ++residentAtLevel[static_cast<std::size_t>(path.level())];
-      for (int level = 0; level < path.level(); ++level) ++residentBelow[path.ancestor(level)];
-    }
-    entry.info = ResidentTile{tile->metadata.subtreeHeights};
-    entry.ground = GroundMesh::fromTile(*tile);
-    entry.mesh = tile;
-    entry.bytes = gpuBytes + entry.ground.bytes();
-    residentBytes += entry.bytes;
-  }
-
-  void setEvicted(const FacePath& path) {
-    const auto found = entries.find(path);
-    Entry& entry = found->second;
-    residentBytes -= entry.bytes;
-    --residentCount;
-    --residentAtLevel[static_cast<std::size_t>(path.level())];
-    ++evicted;
-    for (int level = 0; level < path.level(); ++level) {
-      const auto above = residentBelow.find(path.ancestor(level));
-      if (--above->second == 0) residentBelow.erase(above);
-    }
-    if (entry.request == Entry::Request::None) {
-      entries.erase(found);
-      return;
-    }
-    entry.resident = false;
-    entry.bytes = 0;
-    entry.ground = GroundMesh();
-    entry.mesh.reset();
-  }
-
-  bool mayEvict(const FacePath& path, const Entry& entry, Clock::time_point now) const {
-    return entry.resident && entry.drawnMark != drawMark && entry.wantedCall != call && !inGrace(entry, now) &&
-           !residentBelow.contains(path);
+    residency.add(tile, found->second.revision, gpuBytes, found->second.wanted);
+    requests.erase(found);
   }
 
   std::vector<FacePath> evict(const std::vector<FacePath>& draw) {
-    std::vector<FacePath> gone;
-    if (residentBytes <= options.residentBudgetBytes) return gone;
     const auto now = Clock::now();
-    ++drawMark;
-    for (const FacePath& path : draw) {
-      if (const auto found = entries.find(path); found != entries.end()) found->second.drawnMark = drawMark;
-    }
-    // Oldest first, finest first among equals; when a tile has gone, its parent may follow.
-    using Candidate = std::tuple<std::uint64_t, int, FacePath>;
-    std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates;
-    const auto consider = [&](const FacePath& path, const Entry& entry) {
-      if (mayEvict(path, entry, now)) candidates.emplace(entry.wantedCall, -path.level(), path);
-    };
-    for (const auto& [path, entry] : entries) consider(path, entry);
-    while (residentBytes > options.residentBudgetBytes && !candidates.empty()) {
-      const FacePath path = std::get<FacePath>(candidates.top());
-      candidates.pop();
-      setEvicted(path);
-      gone.push_back(path);
-      if (path.level() == 0) continue;
-      for (FacePath above = path.parent();; above = above.parent()) {
-        const auto found = entries.find(above);
-        if (found != entries.end() && found->second.resident) {
-          consider(above, found->second);
-          break;
-        }
-        if (above.level() == 0) break;
-      }
-    }
+    auto gone = residency.evict(options.residentBudgetBytes, draw,
+                                [&](const LastWanted& wanted) { return stillWanted(wanted, now); });
+    evicted += gone.size();
     return gone;
-  }
-
-  std::optional<Ground> groundBelow(const glm::dvec3& directionBody) const {
-    const double length = glm::length(directionBody);
-    if (!body || !(length > 0) || !std::isfinite(length) || body->selection.scheme != Scheme::Cube) return std::nullopt;
-    const glm::dvec3 direction = directionBody / length;
-    const FaceCoordinates on = cubeFaceCoordinates(direction);
-    for (int level = FacePath::kMaxLevel; level >= 0; --level) {
-      if (residentAtLevel[static_cast<std::size_t>(level)] == 0) continue;
-      const double tiles = static_cast<double>(std::uint64_t{1} << level);
-      const double x = std::clamp(0.5 * (on.s + 1.0), 0.0, 1.0) * tiles, y = std::clamp(0.5 * (on.t + 1.0), 0.0, 1.0) * tiles;
-      const double column = std::min(std::floor(x), tiles - 1), row = std::min(std::floor(y), tiles - 1);
-      const auto found = entries.find(FacePath::cubeTile(on.face, level, static_cast<std::uint32_t>(column),
-                                                         static_cast<std::uint32_t>(row)));
-      if (found == entries.end() || !found->second.resident) continue;
-      const auto height = found->second.ground.heightMeters(direction, x - column, y - row, body->selection.radiusMeters);
-      if (height) return Ground{*height, level};
-    }
-    return std::nullopt;
   }
 
   bool idle() {
@@ -342,7 +251,8 @@ struct TileStream::State {
     if (sceneStale) return "the server has a new version of this body: moving over";
     if (bodyMissing) return "the server no longer has the body " + body->name;
     if (!counts.trouble.empty() && counts.orders > 0) return counts.trouble;
-    if (failed > 0) return std::to_string(failed) + (failed == 1 ? " tile" : " tiles") + " cannot be had; last " + lastFailure;
+    if (failed > 0)
+      return std::to_string(failed) + (failed == 1 ? " tile" : " tiles") + " cannot be had; last " + lastFailure;
     return cache ? cache->notice() : std::string();
   }
 };
@@ -390,44 +300,29 @@ void TileStream::want(const std::vector<WantedTile>& wanted) {
   state_->drain();
   if (!state_->body) return;
   ++state_->call;
-  const auto now = Clock::now();
+  const LastWanted now{state_->call, Clock::now()};
   for (const WantedTile& tile : wanted) state_->wantOne(tile, now);
-  state_->dropUnwanted(now);
+  state_->dropUnwanted(now.time);
 }
 
 std::vector<TilePtr> TileStream::takeDecoded(std::size_t maxBytes) {
   state_->drain();
-  std::vector<TilePtr> tiles;
-  for (TilePipeline::Ready& ready : state_->pipeline->takeReady(maxBytes)) {
-    const auto found = state_->orders.find(ready.id);
-    if (found == state_->orders.end()) continue;
-    Entry& entry = state_->entries.at(found->second);
-    entry.request = Entry::Request::Uploading;
-    entry.order = 0;
-    entry.revision = state_->body->revision;
-    state_->orders.erase(found);
-    ++state_->uploading;
-    tiles.push_back(std::move(ready.tile));
-  }
-  return tiles;
+  return state_->takeDecoded(maxBytes);
 }
 
-void TileStream::markResident(const TilePtr& tile, std::size_t gpuBytes) { state_->setResident(tile, gpuBytes); }
+void TileStream::markResident(const TilePtr& tile, std::size_t gpuBytes) { state_->markResident(tile, gpuBytes); }
 
 std::vector<FacePath> TileStream::evict(const std::vector<FacePath>& draw) { return state_->evict(draw); }
 
-const ResidentTile* TileStream::resident(const FacePath& path) const {
-  const auto found = state_->entries.find(path);
-  return found != state_->entries.end() && found->second.resident ? &found->second.info : nullptr;
-}
+const ResidentTile* TileStream::resident(const FacePath& path) const { return state_->residency.find(path); }
 
-TilePtr TileStream::tile(const FacePath& path) const {
-  const auto found = state_->entries.find(path);
-  return found != state_->entries.end() && found->second.resident ? found->second.mesh.lock() : nullptr;
-}
+TilePtr TileStream::tile(const FacePath& path) const { return state_->residency.mesh(path); }
 
 std::optional<TileStream::Ground> TileStream::groundBelow(const glm::dvec3& directionBody) const {
-  return state_->groundBelow(directionBody);
+  const BodyInfo* body = state_->body;
+  if (!body || body->selection.scheme != Scheme::Cube) return std::nullopt;
+  const auto ground = state_->residency.groundBelow(directionBody, body->selection.radiusMeters);
+  return ground ? std::optional(Ground{ground->heightMeters, ground->level}) : std::nullopt;
 }
 
 bool TileStream::idle() const { return state_->idle(); }
@@ -443,9 +338,9 @@ StreamStatus TileStream::status() const {
   status.fetching = net.running;
   status.decoding = counts.decoding;
   status.ready = counts.ready;
-  status.resident = state_->residentCount;
+  status.resident = state_->residency.size();
   status.failed = state_->failed;
-  status.residentBytes = state_->residentBytes;
+  status.residentBytes = state_->residency.bytes();
   status.requests = net.requests;
   status.bytesReceived = net.bytesReceived;
   status.cacheHits = counts.cacheHits;

@@ -56,8 +56,7 @@ constexpr Halves split(float x) noexcept {
 
 }  // namespace double_float_detail
 
-// ---- error-free transforms: hi is the rounded result, hi + lo the exact one
-// --------------------------------------------------------
+// ---- error-free transforms: hi is the rounded result, hi + lo the exact one ----
 
 /// Exact for any two finite floats whose sum does not overflow (Knuth; 6 operations).
 constexpr DoubleFloat twoSum(float a, float b) noexcept {
@@ -113,8 +112,7 @@ constexpr DoubleFloat finish(float plain, float hi, float lo) noexcept {
 
 }  // namespace double_float_detail
 
-// ---- conversions
-// -------------------------------------------------------------------------------------------------------------------
+// ---- conversions ----
 
 /// Within u^2: 2.5e-4 m at 1 AU. Beyond float's range: infinite.
 constexpr DoubleFloat fromDouble(double value) noexcept {
@@ -129,8 +127,7 @@ constexpr double toDouble(const DoubleFloat& x) noexcept {
   return x.lo == 0 ? static_cast<double>(x.hi) : static_cast<double>(x.hi) + static_cast<double>(x.lo);
 }
 
-// ---- arithmetic
-// --------------------------------------------------------------------------------------------------------------------
+// ---- arithmetic ----
 
 constexpr DoubleFloat operator-(const DoubleFloat& x) noexcept { return DoubleFloat{-x.hi, -x.lo}; }
 

@@ -18,7 +18,8 @@ constexpr int kNone = -1;
 /// A tile that was looked at. Nodes of one level are contiguous, the four children of one tile too.
 struct Node {
   FacePath path;
-  HeightRange heights;  ///< its own if resident, else those of the nearest resident ancestor, else the body's
+  HeightRange subtreeHeights;  ///< the tile's if it is resident, else those of the nearest resident ancestor, else the body's
+  HeightRange ownHeights;      ///< likewise; for a tile that is not resident no bound, but where its ground will about be
   double errorPixels = 0;
   bool visible = false;
   bool resident = false;
@@ -54,20 +55,36 @@ class Selector {
   }
 
  private:
-  void addNode(const FacePath& path, const HeightRange& inherited) {
+  void addNode(const FacePath& path, const HeightRange& inheritedSubtree, const HeightRange& inheritedOwn) {
     Node node;
     node.path = path;
-    const ResidentTile* tile = resident_ ? resident_(path) : nullptr;
-    node.resident = tile != nullptr;
-    node.heights = node.resident ? intersection(tile->subtreeHeights, inherited) : inherited;
-    const TileBounds bounds = tileBounds(path, body_.radiusMeters, node.heights, body_.occluderRadiusMeters);
-    node.visible = (!settings_.horizonCulling || !horizon_.hides(bounds.horizonPoint)) &&
-                   (!settings_.frustumCulling || frustum_.mayContain(bounds.hull));
+    node.subtreeHeights = inheritedSubtree;
+    node.ownHeights = inheritedOwn;
+    bool ownHeightsKnown = false;
+    if (const ResidentTile* tile = resident_ ? resident_(path) : nullptr; tile != nullptr) {
+      node.resident = true;
+      node.subtreeHeights = intersection(tile->subtreeHeights, inheritedSubtree);
+      ownHeightsKnown = tile->ownHeights.has_value();
+      node.ownHeights = tile->ownHeights.value_or(node.subtreeHeights);
+    }
+    node.visible = mayBeSeen(boundsOf(path, node.subtreeHeights));
     if (node.visible) {
-      node.errorPixels = screenSpaceErrorPixels(errorMeters(path.level()), bounds.box, camera_);
-      ++visibleCount_;
+      const TileBounds own = boundsOf(path, node.ownHeights);
+      node.errorPixels = screenSpaceErrorPixels(errorMeters(path.level()), own.box, camera_);
+      // A tile that has no reason to be refined is seen by its own mesh or not at all.
+      if (ownHeightsKnown && !(node.errorPixels > settings_.errorPixels && path.level() < body_.maxLevel)) node.visible = mayBeSeen(own);
+      visibleCount_ += node.visible ? 1 : 0;
     }
     nodes_.push_back(node);
+  }
+
+  TileBounds boundsOf(const FacePath& path, const HeightRange& heights) const {
+    return tileBounds(path, body_.radiusMeters, heights, body_.occluderRadiusMeters);
+  }
+
+  bool mayBeSeen(const TileBounds& bounds) const {
+    return (!settings_.horizonCulling || !horizon_.hides(bounds.horizonPoint)) &&
+           (!settings_.frustumCulling || frustum_.mayContain(bounds.hull));
   }
 
   double errorMeters(int level) const {
@@ -77,7 +94,7 @@ class Selector {
 
   void growWantedTree() {
     for (int face = 0; face < faceCount(body_.scheme); ++face)
-      addNode(FacePath::wholeFace(body_.scheme, face), body_.heights);
+      addNode(FacePath::wholeFace(body_.scheme, face), body_.heights, body_.heights);
     levelStart_ = {0, static_cast<int>(nodes_.size())};
     for (int level = 0; level < body_.maxLevel && levelStart_[level] < levelStart_[level + 1]; ++level) {
       indexLevel(level);
@@ -104,9 +121,8 @@ class Selector {
     node(index).firstNeighbour = static_cast<int>(neighbours_.size());
     neighbours_.insert(neighbours_.end(), around.begin(), around.end());
     node(index).firstChild = static_cast<int>(nodes_.size());
-    const FacePath path = at(index).path;
-    const HeightRange heights = at(index).heights;
-    for (int digit = 0; digit < 4; ++digit) addNode(path.child(digit), heights);
+    const Node parent = at(index);
+    for (int digit = 0; digit < 4; ++digit) addNode(parent.path.child(digit), parent.subtreeHeights, parent.ownHeights);
   }
 
   void indexLevel(int level) {

@@ -27,9 +27,11 @@ struct SelectionBody {
   std::vector<double> geometricErrorMeters;
 };
 
-/// What is known of a resident tile. subtreeHeights also bounds every descendant.
+/// What is known of a resident tile. subtreeHeights also bounds every descendant; it is proven, and therefore wide. A tile that is to
+/// be drawn itself is culled by ownHeights, its mesh's, where that is known.
 struct ResidentTile {
   HeightRange subtreeHeights;
+  std::optional<HeightRange> ownHeights = std::nullopt;
 };
 /// Returns null for a tile that is not resident. Called from the calling thread only.
 using ResidentLookup = std::function<const ResidentTile*(const FacePath&)>;

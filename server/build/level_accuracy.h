@@ -1,7 +1,7 @@
 #pragma once
-// What each level of a body leaves out, and what follows from it: how far descendants may reach beyond a tile's own heights, how deep
-// a skirt must hang, and the geometric error that selection works with. Metres, along the vertical. From the field's proven bounds;
-// computed once for a body. Thread-safe.
+// What each level of a body leaves out, and what follows from it: how far descendants may reach beyond a tile's own heights, and the
+// geometric error that selection works with. Metres, along the vertical. From the field's proven bounds; computed once for a
+// body. Thread-safe.
 
 #include <vector>
 
@@ -10,10 +10,10 @@
 namespace terrane {
 
 struct LevelAccuracy {
-  double minWavelengthMeters = 0;    ///< the field is sampled down to here: two cells
-  double subtreeSlackMeters = 0;     ///< proven: no descendant's surface leaves the tile's own vertex heights by more
-  double skirtMeters = 0;            ///< proven: covers the gap to a neighbour one level coarser or finer
-  double geometricErrorMeters = 0;   ///< estimate, strictly decreasing with the level; see kErrorPerCell
+  double minWavelengthMeters = 0;   ///< the field is sampled down to here: two cells
+  double subtreeSlackMeters = 0;    ///< proven: no descendant's terrain leaves the tile's own vertex heights by more
+  double skirtSlackMeters = 0;      ///< proven: no skirt hangs further below the lowest terrain around it (skirt.h)
+  double geometricErrorMeters = 0;  ///< estimate, strictly decreasing with the level; see kErrorPerCell
 };
 
 /// Geometric error of a level, in widths of its cells. The deepest thing that a level leaves out is a fresh simple crater as wide as the
@@ -25,7 +25,8 @@ inline constexpr double kErrorPerCell = 0.4;
 /// Levels 0 .. maxLevel.
 std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, int cellsPerEdge, int maxLevel);
 
-/// What the lattice may move a vertex by, metres: half a step in each axis.
-double roundingMeters(double radiusMeters, int level) noexcept;
+/// How far a skirt hangs below the lowest of the edges that may meet it, so that the lattice's rounding opens nothing: half a step in each
+/// axis for a vertex of the tile, twice that for one of a coarser neighbour.
+double skirtMarginMeters(double radiusMeters, int level) noexcept;
 
 }  // namespace terrane

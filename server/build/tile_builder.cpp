@@ -9,6 +9,7 @@
 #include "proto/gltf_tile.h"
 #include "server/build/grid_directions.h"
 #include "server/build/level_accuracy.h"
+#include "server/build/skirt.h"
 #include "server/build/tile_revision.h"
 #include "server/build/tile_topology.h"
 
@@ -25,6 +26,8 @@ double millisecondsSince(Clock::time_point start) {
 struct BuildScratch {
   GridDirections directions;
   SurfaceSamples samples;
+  SkirtScratch skirt;
+  std::vector<double> skirtHeights;
   std::vector<LatticePoint> lattice;  ///< of all vertices, skirts included
 };
 
@@ -54,15 +57,18 @@ HeightRange rangeOf(const std::vector<double>& heights) {
 }
 
 /// Where the grid's vertices and the skirts below them fall on the lattice.
-void placeVertices(const GridDirections& at, const std::vector<double>& heights, const TileTopology& topology,
-                   double radiusMeters, double skirtMeters, int exponent, std::vector<LatticePoint>& out) {
+void placeVertices(const BuildScratch& memory, const TileTopology& topology, double radiusMeters, int exponent,
+                   std::vector<LatticePoint>& out) {
+  const GridDirections& at = memory.directions;
   const auto place = [&](std::size_t vertex, double height) {
     const double radius = radiusMeters + height;
     return roundToLattice({at.x[vertex] * radius, at.y[vertex] * radius, at.z[vertex] * radius}, exponent);
   };
+  const std::vector<double>& heights = memory.samples.heightMeters;
   out.clear();
   for (std::size_t vertex = 0; vertex < heights.size(); ++vertex) out.push_back(place(vertex, heights[vertex]));
-  for (const std::uint32_t anchor : topology.skirtAnchors) out.push_back(place(anchor, heights[anchor] - skirtMeters));
+  for (std::size_t k = 0; k < topology.skirtAnchors.size(); ++k)
+    out.push_back(place(topology.skirtAnchors[k], memory.skirtHeights[k]));
 }
 
 /// Offsets from the componentwise smallest point, which becomes the origin. False if one does not fit into 16 bits.
@@ -129,7 +135,7 @@ struct TileBuilder::State {
 
   Result<Tile> buildMesh(const FacePath& path, BuildScratch& scratchMemory, BuildTimes& times) const;
   Result<void> checkPath(const FacePath& path) const;
-  void describe(const FacePath& path, TileMetadata& metadata, const HeightRange& vertexHeights) const;
+  void describe(const FacePath& path, const BuildScratch& memory, TileMetadata& metadata) const;
 };
 
 TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(std::make_unique<State>()) {
@@ -151,7 +157,7 @@ TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(s
   selection.scheme = Scheme::Cube;
   selection.radiusMeters = radius;
   selection.maxLevel = deepest;
-  selection.heights = {state.fieldHeights.minMeters - state.levels.front().skirtMeters, state.fieldHeights.maxMeters};
+  selection.heights = {state.fieldHeights.minMeters - state.levels.front().skirtSlackMeters, state.fieldHeights.maxMeters};
   selection.occluderRadiusMeters = lowestSurfaceRadiusMeters(radius, state.fieldHeights.minMeters, wire.cellsPerEdge);
   for (const LevelAccuracy& level : state.levels) selection.geometricErrorMeters.push_back(level.geometricErrorMeters);
 }
@@ -173,18 +179,20 @@ Result<void> TileBuilder::State::checkPath(const FacePath& path) const {
   return {};
 }
 
-void TileBuilder::State::describe(const FacePath& path, TileMetadata& metadata, const HeightRange& vertexHeights) const {
-  const auto level = static_cast<std::size_t>(path.level());
-  const LevelAccuracy& accuracy = levels[level];
-  const double skirt = accuracy.skirtMeters;
-  metadata.heights = {vertexHeights.minMeters - skirt, vertexHeights.maxMeters};
+void TileBuilder::State::describe(const FacePath& path, const BuildScratch& memory, TileMetadata& metadata) const {
+  const LevelAccuracy& accuracy = levels[static_cast<std::size_t>(path.level())];
+  const HeightRange terrain = rangeOf(memory.samples.heightMeters);
+  metadata.heights = {std::min(terrain.minMeters, rangeOf(memory.skirtHeights).minMeters), terrain.maxMeters};
+  double deepest = 0;
+  for (std::size_t k = 0; k < memory.skirtHeights.size(); ++k)
+    deepest = std::max(deepest, memory.samples.heightMeters[topology->skirtAnchors[k]] - memory.skirtHeights[k]);
 
-  // Descendants: their vertices, then the skirts below them; neither leaves what the field can give at all.
-  const double slack = accuracy.subtreeSlackMeters;
-  const double finerSkirt = level + 1 < levels.size() ? levels[level + 1].skirtMeters : 0.0;
-  const double lowest = std::max(vertexHeights.minMeters - slack, fieldHeights.minMeters) - finerSkirt;
-  metadata.subtreeHeights = {std::min(metadata.heights.minMeters, lowest),
-                             std::max(vertexHeights.maxMeters, std::min(vertexHeights.maxMeters + slack, fieldHeights.maxMeters))};
+  // Of descendants: no terrain leaves the slack, nor what the field can give at all; a finer tile's skirts reach below terrain of its own
+  // level and the two beside it, none of them coarser than this tile's.
+  const double lowest = std::max(terrain.minMeters - accuracy.subtreeSlackMeters, fieldHeights.minMeters);
+  const double highest = std::min(terrain.maxMeters + accuracy.subtreeSlackMeters, fieldHeights.maxMeters);
+  metadata.subtreeHeights = {std::min(metadata.heights.minMeters, lowest - accuracy.skirtSlackMeters),
+                             std::max(metadata.heights.maxMeters, highest)};
 
   const TileBounds bounds = tileBounds(path, body.radiusMeters, metadata.subtreeHeights, info.selection.occluderRadiusMeters);
   metadata.path = path;
@@ -192,7 +200,7 @@ void TileBuilder::State::describe(const FacePath& path, TileMetadata& metadata, 
   metadata.sphere = bounds.sphere;
   metadata.horizonPoint = bounds.horizonPoint;
   metadata.cellsPerEdge = wire.cellsPerEdge;
-  metadata.skirtMeters = static_cast<float>(skirt);
+  metadata.skirtMeters = static_cast<float>(deepest);
 }
 
 Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& memory, BuildTimes& times) const {
@@ -204,13 +212,14 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   const auto side = static_cast<std::size_t>(wire.cellsPerEdge) + 1;
   const SampleBatch batch{memory.directions.x.data(), memory.directions.y.data(), memory.directions.z.data(), side, side};
   field->evaluate(batch, accuracy.minWavelengthMeters, memory.samples);
+  skirtHeights({*field, levels, *topology, radius, path, memory.directions, memory.samples.heightMeters}, memory.skirt,
+               memory.skirtHeights);
   times.fieldMs += millisecondsSince(start);
 
   const auto meshStart = Clock::now();
   Tile tile;
   tile.metadata.stepExponent = stepExponent(radius, path.level());
-  placeVertices(memory.directions, memory.samples.heightMeters, *topology, radius, accuracy.skirtMeters,
-                tile.metadata.stepExponent, memory.lattice);
+  placeVertices(memory, *topology, radius, tile.metadata.stepExponent, memory.lattice);
   if (!offsetsFromOrigin(memory.lattice, tile.metadata.origin, tile.mesh.offsets))
     return makeError(ErrorKind::TooLarge, "digits",
                      path.text() + " of " + body.name + " is steeper than 16 bits of its lattice can hold");
@@ -225,7 +234,7 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   }
   tile.mesh.gridIndices = topology->gridIndices;
   tile.mesh.triangles = topology->triangles;
-  describe(path, tile.metadata, rangeOf(memory.samples.heightMeters));
+  describe(path, memory, tile.metadata);
   times.meshMs += millisecondsSince(meshStart);
   return tile;
 }

@@ -28,9 +28,9 @@ double octavePosition(double diameter) noexcept {
 }
 
 // Depth over diameter at 16, 32, ... 16384 m, and from there on depth and rim height in metres at 16384, 32768, ... 524288 m.
-constexpr std::array<double, 11> kSimpleRatio{0.115, 0.12, 0.12, 0.14, 0.155, 0.18, 0.195, 0.2, 0.2, 0.19, 0.147};
+constexpr std::array<double, 11> kSimpleRatio{0.115, 0.12, 0.12, 0.14, 0.175, 0.198, 0.2, 0.2, 0.2, 0.19, 0.147};
 constexpr std::array<double, 6> kComplexDepth{2410, 2960, 3650, 4490, 5540, 6800};
-constexpr std::array<double, 6> kComplexRim{600, 900, 1240, 1640, 2170, 2800};
+constexpr std::array<double, 6> kComplexRim{690, 945, 1245, 1640, 2170, 2800};
 
 struct Cell {
   int face;
@@ -117,6 +117,7 @@ struct Range {
 /// Cells along one face axis that a ball may touch: the ball's box, projected from the body's centre. along, outward: the ball's centre.
 Range cellRange(double along, double outward, double reach, std::uint32_t cells) noexcept {
   const double nearest = outward - reach, farthest = outward + reach;
+  if (std::fabs(along) - reach > farthest) return {};  // beside or behind the face's pyramid |along| <= outward
   double low = -1, high = 1;
   if (nearest > 0) {
     low = (along - reach) / (along - reach < 0 ? nearest : farthest);
@@ -243,7 +244,7 @@ void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const double c
     const Range columns = cellRange(along(axes.u), outward, reach, layer.cellsPerFace);
     const Range rows = cellRange(along(axes.v), outward, reach, layer.cellsPerFace);
     if (columns.first > columns.last) continue;
-    for (std::uint32_t row = rows.first; row <= rows.last && rows.first <= rows.last; ++row) {
+    for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
       for (std::uint32_t column = columns.first; column <= columns.last; ++column) {
         Feature f;
         if (!featureOfCell(layer, bodyRadius, face, column, row, f)) continue;

@@ -261,8 +261,9 @@ double LunarBounds::omittedAmplitudeMeters(double minWavelengthMeters, double fi
     }
   }
   const double total = std::max(sums[0], sums[1]) + sums[2] + sums[3];
-  // A hundredth of a part in a million of the range covers the rounding of the sums themselves.
-  return std::min(total * (1 + 1e-9) + (total > 0 ? 1e-4 : 0), range_.maxMeters - range_.minMeters);
+  // What float32 may differ from double, where the two levels differ in it; and the rounding of fine levels.
+  const bool mixed = minWavelengthMeters >= kCoarseWavelength && finestWavelengthMeters < kCoarseWavelength;
+  return std::min(total * (1 + 1e-9) + (mixed ? kCoarseRounding : total > 0 ? 1e-4 : 0), range_.maxMeters - range_.minMeters);
 }
 
 double LunarBounds::interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept {
@@ -281,7 +282,8 @@ double LunarBounds::interpolationErrorMeters(double minWavelengthMeters, double 
   const double clamp = jensenGap(std::max(slopes[0], slopes[1]) + slopes[2], s, clampBlend_);
   // Regolith is calmed by up to the dry land's slope times its own size: both are in the patches' slope, far below this allowance.
   const double total = std::max(errors[0], errors[1]) + flood + errors[2] + clamp + 1.05 * errors[3];
-  return std::min(total * (1 + 1e-9) + 1e-4, range_.maxMeters - range_.minMeters);
+  const double rounding = minWavelengthMeters >= kCoarseWavelength ? 2 * kCoarseRounding : 1e-4;
+  return std::min(total * (1 + 1e-9) + rounding, range_.maxMeters - range_.minMeters);
 }
 
 }  // namespace terrane::lunar

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "common/numerics/strict_math.h"
 #include "server/fields/lunar_landmarks.h"
@@ -23,6 +24,9 @@ struct SurfaceSamples::Scratch {
 };
 
 namespace {
+
+/// Craters from 1 km up are computed in double at fine levels.
+constexpr int kDoubleExponent = 10;
 
 double parameter(const Body& body, std::string_view name) {
   if (const auto found = body.fieldParameters.find(name); found != body.fieldParameters.end()) return found->second;
@@ -91,7 +95,7 @@ Ball boundingBall(const double* x, const double* y, const double* z, std::size_t
     const double dx = x[i] - ball.center[0], dy = y[i] - ball.center[1], dz = z[i] - ball.center[2];
     square = std::max(square, dx * dx + dy * dy + dz * dz);
   }
-  ball.radius = std::sqrt(square) * (1 + 1e-9) + 1e-9;
+  ball.radius = std::sqrt(square) * (1 + 1e-9);
   return ball;
 }
 
@@ -228,6 +232,137 @@ void LunarField::makeLandmarks() {
   }
 }
 
+/// What a batch needs beside the field: the tables cut to its wavelength, and the features near it.
+class LunarField::Evaluation {
+ public:
+  Evaluation(const LunarField& field, const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out)
+      : field_(field), batch_(batch), minWavelength_(minWavelengthMeters), out_(out), scratch_(*out.scratch), program_(field.base_) {
+    scratch_.groups.clear();
+    for (NoiseGroup group : field.groups_) {
+      while (group.count > 0 && group.octaves[group.count - 1].inverseWavelength * minWavelengthMeters > 1) --group.count;
+      scratch_.groups.push_back(group);
+    }
+    program_.relief = scratch_.groups.front();
+    program_.regolith = scratch_.groups.data() + 1;
+    while (program_.regolithCount + 1 < scratch_.groups.size() && program_.regolith[program_.regolithCount].count > 0) {
+      ++program_.regolithCount;
+    }
+    program_.reliefInDouble = minWavelengthMeters < kCoarseWavelength;
+    double finest = radius();
+    for (const FeatureLayer& layer : field.layers_) {
+      if (layer.wavelengthMeters() >= minWavelengthMeters) finest = layer.wavelengthMeters();
+    }
+    widestBall_ = kWidestBall * finest;
+  }
+
+  /// Features are gathered for the whole batch where it is compact, as tiles are, else for each block, else for each sample: a ball
+  /// over half the Moon would hold more pebbles than there is time.
+  void run() {
+    const Ball whole = scaled(boundingBall(batch_.x, batch_.y, batch_.z, batch_.count()));
+    const bool compact = whole.radius <= widestBall_;
+    if (compact) gather(whole);
+    const BlockGrid grid = blockGrid(batch_);
+    for (std::size_t blockRow = 0; blockRow < grid.rows; ++blockRow) {
+      for (std::size_t blockColumn = 0; blockColumn < grid.columns; ++blockColumn) {
+        std::size_t used = 0;
+        const std::size_t rowEnd = std::min(batch_.rows, (blockRow + 1) * grid.blockRows);
+        const std::size_t columnEnd = std::min(batch_.rowLength, (blockColumn + 1) * grid.blockColumns);
+        for (std::size_t row = blockRow * grid.blockRows; row < rowEnd; ++row) {
+          for (std::size_t column = blockColumn * grid.blockColumns; column < columnEnd; ++column) {
+            indices_[used++] = row * batch_.rowLength + column;
+          }
+        }
+        if (used > 0) evaluateBlock({indices_.data(), used}, compact);
+      }
+    }
+  }
+
+ private:
+  static constexpr double kWidestBall = 300;  ///< in wavelengths of the finest layer; a tile has a ball of some 25 to 50
+
+  double radius() const noexcept { return field_.radius_; }
+  Ball scaled(Ball ball) const noexcept {
+    for (double& c : ball.center) c *= radius();
+    ball.radius = (ball.radius + 1e-9) * radius();
+    return ball;
+  }
+
+  void finishRun(std::size_t start, FeatureStage stage, bool inDouble) {
+    if (scratch_.features.size() == start) return;
+    scratch_.runStarts.push_back(start);
+    scratch_.runs.push_back({nullptr, scratch_.features.size() - start, stage, inDouble});
+  }
+
+  /// Coarse to fine, within a layer by face, row and column: the order of the sums.
+  void gather(const Ball& ball) {
+    std::vector<Feature>& features = scratch_.features;
+    features.clear();
+    scratch_.runs.clear();
+    scratch_.runStarts.clear();
+    for (const FeatureLayer& layer : field_.layers_) {
+      if (layer.wavelengthMeters() < minWavelength_) break;
+      const std::size_t start = features.size();
+      gatherFeatures(layer, radius(), ball.center, ball.radius, features);
+      finishRun(start, layer.stage, layer.exponent >= kDoubleExponent && program_.reliefInDouble);
+    }
+    const std::size_t start = features.size();
+    for (const Feature& f : field_.landmarkCraters_) {
+      if (f.radius < minWavelength_) break;
+      const double dx = f.center[0] - ball.center[0], dy = f.center[1] - ball.center[1], dz = f.center[2] - ball.center[2];
+      const double limit = f.reach + ball.radius;
+      if (dx * dx + dy * dy + dz * dz <= limit * limit) features.push_back(f);
+    }
+    finishRun(start, FeatureStage::YoungCrater, program_.reliefInDouble);
+    for (std::size_t i = 0; i < scratch_.runs.size(); ++i) scratch_.runs[i].features = features.data() + scratch_.runStarts[i];
+    program_.runs = scratch_.runs.data();
+    program_.runCount = scratch_.runs.size();
+  }
+
+  void evaluateBlock(std::span<const std::size_t> indices, bool gathered) {
+    Block& block = scratch_.block;
+    block.count = (indices.size() + kChunk - 1) / kChunk * kChunk;
+    for (std::size_t i = 0; i < block.count; ++i) {
+      const std::size_t from = indices[std::min(i, indices.size() - 1)];
+      block.x[i] = batch_.x[from] * radius();
+      block.y[i] = batch_.y[from] * radius();
+      block.z[i] = batch_.z[from] * radius();
+    }
+    const Ball whole = boundingBall(block.x, block.y, block.z, block.count);
+    if (!gathered) {
+      if (whole.radius > widestBall_ && indices.size() > 1) {
+        for (std::size_t i = 0; i < indices.size(); ++i) evaluateBlock(indices.subspan(i, 1), false);
+        return;
+      }
+      gather(whole);
+    }
+    std::copy(whole.center, whole.center + 3, block.center);
+    block.radius = whole.radius;
+    for (std::size_t chunk = 0; chunk * kChunk < block.count; ++chunk) {
+      const std::size_t at = chunk * kChunk;
+      const Ball part = boundingBall(block.x + at, block.y + at, block.z + at, kChunk);
+      std::copy(part.center, part.center + 3, block.chunkCenter[chunk]);
+      block.chunkRadius[chunk] = part.radius;
+    }
+    field_.evaluateBlock_(program_, block);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      const std::size_t to = indices[i];
+      out_.heightMeters[to] = block.height[i];
+      out_.gradientX[to] = block.gradientX[i];
+      out_.gradientY[to] = block.gradientY[i];
+      out_.gradientZ[to] = block.gradientZ[i];
+      out_.reflectance[to] = block.reflectance[i];
+    }
+  }
+
+  const LunarField& field_;
+  const SampleBatch& batch_;
+  double minWavelength_, widestBall_ = 0;
+  SurfaceSamples& out_;
+  SurfaceSamples::Scratch& scratch_;
+  Program program_;
+  std::array<std::size_t, kBlockCapacity> indices_{};
+};
+
 void LunarField::evaluate(const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out) const {
   const std::size_t count = batch.count();
   out.heightMeters.resize(count);
@@ -237,92 +372,7 @@ void LunarField::evaluate(const SampleBatch& batch, double minWavelengthMeters, 
   out.reflectance.resize(count);
   if (count == 0) return;
   if (!out.scratch) out.scratch = std::make_shared<SurfaceSamples::Scratch>();
-  SurfaceSamples::Scratch& scratch = *out.scratch;
-
-  Program program = base_;
-  scratch.groups.clear();
-  for (const NoiseGroup& group : groups_) {
-    NoiseGroup visible = group;
-    while (visible.count > 0 && visible.octaves[visible.count - 1].inverseWavelength * minWavelengthMeters > 1) --visible.count;
-    scratch.groups.push_back(visible);
-  }
-  program.relief = scratch.groups.front();
-  program.regolith = scratch.groups.data() + 1;
-  while (program.regolithCount + 1 < scratch.groups.size() && program.regolith[program.regolithCount].count > 0) {
-    ++program.regolithCount;
-  }
-
-  Ball ball = boundingBall(batch.x, batch.y, batch.z, count);
-  for (double& c : ball.center) c *= radius_;
-  ball.radius = ball.radius * radius_ + 1e-9 * radius_;
-  std::vector<Feature>& features = scratch.features;
-  features.clear();
-  scratch.runs.clear();
-  scratch.runStarts.clear();
-  const auto finish = [&](std::size_t start, FeatureStage stage, bool inDouble) {
-    if (features.size() == start) return;
-    scratch.runStarts.push_back(start);
-    scratch.runs.push_back({nullptr, features.size() - start, stage, inDouble});
-  };
-  for (const FeatureLayer& layer : layers_) {
-    if (layer.wavelengthMeters() < minWavelengthMeters) break;
-    const std::size_t start = features.size();
-    gatherFeatures(layer, radius_, ball.center, ball.radius, features);
-    finish(start, layer.stage, layer.exponent >= 10);
-  }
-  const std::size_t start = features.size();
-  for (const Feature& f : landmarkCraters_) {
-    if (f.radius < minWavelengthMeters) break;
-    const double dx = f.center[0] - ball.center[0], dy = f.center[1] - ball.center[1], dz = f.center[2] - ball.center[2];
-    const double limit = f.reach + ball.radius;
-    if (dx * dx + dy * dy + dz * dz <= limit * limit) features.push_back(f);
-  }
-  finish(start, FeatureStage::YoungCrater, true);
-  for (std::size_t i = 0; i < scratch.runs.size(); ++i) scratch.runs[i].features = features.data() + scratch.runStarts[i];
-  program.runs = scratch.runs.data();
-  program.runCount = scratch.runs.size();
-
-  const BlockGrid grid = blockGrid(batch);
-  Block& block = scratch.block;
-  std::array<std::size_t, kBlockCapacity> index;
-  for (std::size_t blockRow = 0; blockRow < grid.rows; ++blockRow) {
-    for (std::size_t blockColumn = 0; blockColumn < grid.columns; ++blockColumn) {
-      std::size_t used = 0;
-      const std::size_t rowEnd = std::min(batch.rows, (blockRow + 1) * grid.blockRows);
-      const std::size_t columnEnd = std::min(batch.rowLength, (blockColumn + 1) * grid.blockColumns);
-      for (std::size_t row = blockRow * grid.blockRows; row < rowEnd; ++row) {
-        for (std::size_t column = blockColumn * grid.blockColumns; column < columnEnd; ++column) {
-          index[used++] = row * batch.rowLength + column;
-        }
-      }
-      if (used == 0) continue;
-      block.count = (used + kChunk - 1) / kChunk * kChunk;
-      for (std::size_t i = 0; i < block.count; ++i) {
-        const std::size_t from = index[std::min(i, used - 1)];
-        block.x[i] = batch.x[from] * radius_;
-        block.y[i] = batch.y[from] * radius_;
-        block.z[i] = batch.z[from] * radius_;
-      }
-      const Ball whole = boundingBall(block.x, block.y, block.z, block.count);
-      std::copy(whole.center, whole.center + 3, block.center);
-      block.radius = whole.radius;
-      for (std::size_t chunk = 0; chunk * kChunk < block.count; ++chunk) {
-        const std::size_t at = chunk * kChunk;
-        const Ball part = boundingBall(block.x + at, block.y + at, block.z + at, kChunk);
-        std::copy(part.center, part.center + 3, block.chunkCenter[chunk]);
-        block.chunkRadius[chunk] = part.radius;
-      }
-      evaluateBlock_(program, block);
-      for (std::size_t i = 0; i < used; ++i) {
-        const std::size_t to = index[i];
-        out.heightMeters[to] = block.height[i];
-        out.gradientX[to] = block.gradientX[i];
-        out.gradientY[to] = block.gradientY[i];
-        out.gradientZ[to] = block.gradientZ[i];
-        out.reflectance[to] = block.reflectance[i];
-      }
-    }
-  }
+  Evaluation(*this, batch, minWavelengthMeters, out).run();
 }
 
 double LunarField::omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept {

@@ -6,8 +6,8 @@
 //   young    craters of all sizes since then (feature_layers.h), down to decimetres, and rocks and stones; the sum is clamped to the
 //            stated range by a C2 curve that leaves the middle as it is
 //   regolith fractal noise whose slopes grow slowly towards small scales, rougher in some places than in others
-// Noise below 8 km, craters below 1 km and rocks are computed in float32 relative to their cell or centre, the rest in double: no
-// step above a hundredth of a millimetre anywhere. Every SIMD path, batch and thread gives the same bits.
+// Noise below 8 km, craters below 1 km and rocks are computed in float32 relative to their cell or centre, the rest in double (at
+// levels with cells under 32 m): no rounding step above some hundredths of a millimetre there. Every SIMD path, batch and thread gives the same bits.
 
 #include <string>
 #include <vector>
@@ -29,6 +29,7 @@ class LunarField final : public HeightField {
   std::string identity() const override;
 
  private:
+  class Evaluation;
   void makeNoise();
   void makeLandmarks();
 

@@ -37,14 +37,15 @@ TERRANE_INLINE void rotateBack(const float* m, float x, float y, float z, float&
 }
 
 /// Relief and lava are two sums over the same octaves. The last octave is left in `last` as the modulator of the first regolith group.
+template <class Real>
 void addRelief(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) {
   const RotatedBlock rotated = rotateBlock(b, group.rotation);
   float m[9];
   for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(group.rotation[i]);
-  OctaveSamples<double> n;
+  OctaveSamples<Real> n;
   for (std::size_t k = 0; k < group.count; ++k) {
     const NoiseOctave& octave = group.octaves[k];
-    evaluateOctave<double>(rotated, octave, n);
+    evaluateOctave<Real>(rotated, octave, n);
     const double a = octave.amplitude, l = octave.lavaAmplitude;
     const float da = static_cast<float>(a * octave.inverseWavelength), dl = static_cast<float>(l * octave.inverseWavelength);
     const float toUnit = static_cast<float>(octave.inverseWavelength);
@@ -52,11 +53,11 @@ void addRelief(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) {
     for (std::size_t i = 0; i < b.count; ++i) {
       float gx, gy, gz;
       rotateBack(m, n.x[i], n.y[i], n.z[i], gx, gy, gz);
-      b.relief[i] += a * n.value[i];
+      b.relief[i] += a * static_cast<double>(n.value[i]);
       b.reliefX[i] += da * gx;
       b.reliefY[i] += da * gy;
       b.reliefZ[i] += da * gz;
-      b.lava[i] += l * n.value[i];
+      b.lava[i] += l * static_cast<double>(n.value[i]);
       b.lavaX[i] += dl * gx;
       b.lavaY[i] += dl * gy;
       b.lavaZ[i] += dl * gz;
@@ -282,17 +283,14 @@ void addFeatures(const FeatureRun& run, Block& b, const Target& out) {
 }
 
 void addRun(const FeatureRun& run, Block& b) {
-  if (run.stage == FeatureStage::OldCrater) {
-    addFeatures<double, false>(run, b, {b.relief, b.reliefX, b.reliefY, b.reliefZ});
-    return;
-  }
-  const Target young{b.young, b.youngX, b.youngY, b.youngZ};
+  const Target relief{b.relief, b.reliefX, b.reliefY, b.reliefZ}, young{b.young, b.youngX, b.youngY, b.youngZ};
+  const Target& target = run.stage == FeatureStage::OldCrater ? relief : young;
   if (run.stage == FeatureStage::Rock) {
-    addFeatures<float, true>(run, b, young);
+    addFeatures<float, true>(run, b, target);
   } else if (run.inDouble) {
-    addFeatures<double, false>(run, b, young);
+    addFeatures<double, false>(run, b, target);
   } else {
-    addFeatures<float, false>(run, b, young);
+    addFeatures<float, false>(run, b, target);
   }
 }
 
@@ -377,7 +375,11 @@ void kEvaluate(const Program& program, Block& block) noexcept {
   clearBlock(block);
   OctaveSamples<float> modulator;
   for (std::size_t i = 0; i < block.count; ++i) modulator.value[i] = modulator.x[i] = modulator.y[i] = modulator.z[i] = 0.0f;
-  addRelief(program.relief, block, modulator);
+  if (program.reliefInDouble) {
+    addRelief<double>(program.relief, block, modulator);
+  } else {
+    addRelief<float>(program.relief, block, modulator);
+  }
   for (std::size_t k = 0; k < program.basinCount; ++k) {
     if (reaches(block, program.basins[k].center, program.basins[k].reach)) addBasin(program.basins[k], block);
   }

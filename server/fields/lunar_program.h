@@ -8,6 +8,11 @@
 
 namespace terrane::lunar {
 
+/// From this wavelength on a level computes everything in float32: its rounding, below kCoarseRounding in all, is nothing beside the
+/// level's cells. Finer levels take the large features in double, or they would show steps of a tenth of a millimetre.
+inline constexpr double kCoarseWavelength = 64.0;
+inline constexpr double kCoarseRounding = 0.05;
+
 /// Samples are worked on in compact blocks that stay in the first-level cache, in steps of one AVX-512 vector.
 inline constexpr std::size_t kChunk = 16;
 inline constexpr std::size_t kBlockSide = 13;
@@ -88,7 +93,8 @@ struct FeatureRun {
 
 struct Program {
   double radius;
-  NoiseGroup relief;             ///< double; two sums: relief and lava
+  NoiseGroup relief;  ///< two sums: relief and lava
+  bool reliefInDouble;
   const NoiseGroup* regolith;    ///< float32
   std::size_t regolithCount;
   const Basin* basins;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio/as_tuple.hpp>
@@ -227,11 +228,21 @@ Task<bool> writeResponse(Session& session, const ServiceResponse& response, bool
 
 enum class ReadOutcome { Request, Closed, TimedOut, LineTooLong, HeaderTooLarge, BadVersion, Malformed };
 
+/// "METHOD target HTTP/2.0": well formed, of a version that is not served. (Beast calls more than that a bad version.)
+bool namesAnotherVersion(std::string_view input) {
+  const std::size_t end = input.find("\r\n");
+  if (end == std::string_view::npos || end < 8 || std::ranges::count(input.substr(0, end), ' ') != 2) return false;
+  const std::string_view version = input.substr(end - 8, 8);
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  return version.starts_with("HTTP/") && digit(version[5]) && version[6] == '.' && digit(version[7]);
+}
+
 ReadOutcome classify(const error_code& failure, const Session& session) {
   using Http = boost::beast::http::error;
   if (failure == Http::header_limit)
     return session.fields.requestLineRead ? ReadOutcome::HeaderTooLarge : ReadOutcome::LineTooLong;
-  if (failure == Http::bad_version) return ReadOutcome::BadVersion;
+  if (failure == Http::bad_version && namesAnotherVersion({session.input.data(), session.used}))
+    return ReadOutcome::BadVersion;
   return ReadOutcome::Malformed;
 }
 

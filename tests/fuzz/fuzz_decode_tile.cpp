@@ -1,5 +1,5 @@
-// decodeTile. Half of the mutations are made inside the chunks and packed again, or the container's lengths would keep most of them
-// from ever reaching the JSON and the Draco data.
+// decodeTile. Half of the mutations are made inside the chunks and packed again, or the container's lengths would keep
+// most of them from ever reaching the JSON and the Draco data.
 
 #include <cstring>
 #include <string>
@@ -11,7 +11,8 @@
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t maxSize);
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t maxSize, unsigned seed) {
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t maxSize,
+                                               unsigned seed) {
   const auto chunks = terrane::unpackGlb({data, size});
   if (!chunks || seed % 2 == 0) return LLVMFuzzerMutate(data, size, maxSize);
   std::string json(chunks->json);

@@ -29,7 +29,8 @@ void writeTiles(const std::filesystem::path& corpus) {
         for (const int speed : {0, 3, 4, 7, 10}) {
           const auto tile = terrane::test::sampleTile({.cellsPerEdge = cells, .skirts = skirts, .colors = colors});
           const terrane::DracoSettings settings{.speed = speed, .normalBits = 8};
-          const std::string name = std::to_string(cells) + (skirts ? "_skirts" : "") + (colors ? "_colors" : "") + "_speed" + std::to_string(speed);
+          const std::string name = std::to_string(cells) + (skirts ? "_skirts" : "") + (colors ? "_colors" : "") +
+                                   "_speed" + std::to_string(speed);
           write(corpus / "fuzz_decode_draco_seeds" / name, terrane::encodeDraco(tile.mesh, settings).value().bytes);
           write(corpus / "fuzz_decode_tile_seeds" / name, terrane::encodeTile(tile, settings).value());
         }
@@ -45,15 +46,17 @@ void writeScene(const std::filesystem::path& corpus) {
   body.selection.heights = {-9000, 10800};
   body.selection.occluderRadiusMeters = 1728000;
   body.selection.geometricErrorMeters = {1000, 500.5, 250.25};
-  const terrane::EffectCall sun{terrane::EffectKind::Sun, terrane::defaultValues(terrane::effectRow(terrane::EffectKind::Sun).parameters)};
+  const terrane::EffectCall sun{terrane::EffectKind::Sun,
+                                terrane::defaultValues(terrane::effectRow(terrane::EffectKind::Sun).parameters)};
   write(corpus / "fuzz_read_scene_json_seeds" / "moon", terrane::writeSceneJson({"moon", "The Moon", {body}, {sun}}));
 }
 
 void writeTargets(const std::filesystem::path& corpus) {
   int number = 0;
   for (const std::string target :
-       {"/", "/healthz", "/readyz", "/v1/scene.json", "/v1/0123456789abcdef/moon/cube/2.glb", "/v1/0123456789abcdef/moon/ico/19/0312.glb",
-        "//v1//0123456789abcdef/moon/cube/5/0.glb?x=%20", "http://host/v1/%30123456/a/cube/0/3.glb"}) {
+       {"/", "/healthz", "/readyz", "/v1/scene.json", "/v1/0123456789abcdef/moon/cube/2.glb",
+        "/v1/0123456789abcdef/moon/ico/19/0312.glb", "//v1//0123456789abcdef/moon/cube/5/0.glb?x=%20",
+        "http://host/v1/%30123456/a/cube/0/3.glb"}) {
     write(corpus / "fuzz_parse_target_seeds" / std::to_string(number++), target);
   }
 }

@@ -19,7 +19,7 @@ namespace {
 using Quad = boost::multiprecision::cpp_bin_float_quad;
 using Limits = std::numeric_limits<float>;
 
-constexpr int kSamples = 60000;
+constexpr int kSamples = 100000;
 
 Quad exact(const DoubleFloat& x) { return Quad(x.hi) + Quad(x.lo); }
 
@@ -75,8 +75,7 @@ void report(const char* name, const Worst& worst, double bound) {
 
 bool isNormalised(const DoubleFloat& x) { return x.hi + x.lo == x.hi; }
 
-// ---- error-free transforms
-// -----------------------------------------------------------------------------------------------------------
+// ---- error-free transforms ----
 
 TEST(DoubleFloat, TwoSumIsExactInEitherOrder) {
   Operands operands(301);
@@ -164,8 +163,7 @@ TEST(DoubleFloat, TwoProdLosesItsErrorTermOnlyBelowTheStatedFloor) {
   EXPECT_NE(exact(lost), Quad(0x1.000002p-60) * Quad(0x1.000002p-60)) << "the floor is real";
 }
 
-// ---- operations within their bounds
-// ---------------------------------------------------------------------------------------------------
+// ---- operations within their bounds ----
 
 TEST(DoubleFloat, SumsStayWithinTheirBounds) {
   Operands operands(311);
@@ -317,8 +315,7 @@ TEST(DoubleFloat, RootsStayWithinTheirBounds) {
   EXPECT_GT(plain.units, 1e6);
 }
 
-// ---- conversions, order, special values
-// --------------------------------------------------------------------------------------------------
+// ---- conversions, order, special values ----
 
 TEST(DoubleFloat, ADoubleAtOneAstronomicalUnitComesBackWithinAQuarterMillimetre) {
   Operands operands(321);
@@ -413,8 +410,7 @@ TEST(DoubleFloat, DenormalsAddExactly) {
   EXPECT_EQ(subtractAndDemote(DoubleFloat{1.0f, d}, DoubleFloat{1.0f, 0}), d);
 }
 
-// ---- what it is for
-// ------------------------------------------------------------------------------------------------------------------
+// ---- what it is for ----
 
 TEST(DoubleFloat, ACameraMovedByAMillimetreMovesEveryVertexByAMillimetre) {
   // Vertices within 8 m of a camera at the Earth's radius; the camera steps 1 mm along x. What the vertex shader does:

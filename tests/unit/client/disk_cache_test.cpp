@@ -22,7 +22,8 @@ using Bytes = std::vector<std::uint8_t>;
 
 Bytes bytesOf(std::size_t size, int seed) {
   Bytes bytes(size);
-  for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>(i * 31 + static_cast<std::size_t>(seed) * 7);
+  for (std::size_t i = 0; i < size; ++i)
+    bytes[i] = static_cast<std::uint8_t>(i * 31 + static_cast<std::size_t>(seed) * 7);
   return bytes;
 }
 

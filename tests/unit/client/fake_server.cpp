@@ -29,7 +29,8 @@ int boundSocket(int port, int& boundPort) {
   const int yes = 1;
   ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   sockaddr_in address = loopback(port);
-  if (::bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) throw std::runtime_error("cannot bind");
+  if (::bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
+    throw std::runtime_error("cannot bind");
   socklen_t size = sizeof address;
   ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
   boundPort = ntohs(address.sin_port);
@@ -126,8 +127,9 @@ bool FakeServer::answer(int socket, const std::string& target) {
     sendAll(socket, reply.raw);
     return false;
   }
-  const std::string answer = "HTTP/1.1 " + std::to_string(reply.status) + " X\r\nContent-Length: " +
-                             std::to_string(reply.body.size()) + "\r\n" + reply.headers + "\r\n" + reply.body;
+  const std::string answer = "HTTP/1.1 " + std::to_string(reply.status) +
+                             " X\r\nContent-Length: " + std::to_string(reply.body.size()) + "\r\n" + reply.headers +
+                             "\r\n" + reply.body;
   const std::size_t first = answer.size() - (reply.holdHalfway ? reply.body.size() / 2 : 0);
   if (!sendAll(socket, answer.substr(0, first))) return false;
   if (reply.holdHalfway && !(holdBack(socket) && sendAll(socket, answer.substr(first)))) return false;

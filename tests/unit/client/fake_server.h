@@ -1,6 +1,6 @@
 #pragma once
-// An HTTP/1.1 server of a few lines for the tests, on an ephemeral loopback port: a thread a connection, answers from a function of the
-// target, and every misbehaviour a viewer may meet: silence, refusal, nonsense, half an answer.
+// An HTTP/1.1 server of a few lines for the tests, on an ephemeral loopback port: a thread a connection, answers from a
+// function of the target, and every misbehaviour a viewer may meet: silence, refusal, nonsense, half an answer.
 
 #include <atomic>
 #include <condition_variable>
@@ -18,11 +18,11 @@ namespace terrane::testing {
 struct FakeReply {
   int status = 200;
   std::string body = {};
-  std::string headers = {};       ///< whole lines, each ended by CR LF
+  std::string headers = {};  ///< whole lines, each ended by CR LF
   bool hold = false;         ///< answer only after release()
   bool holdHalfway = false;  ///< the header and half the body at once, the rest only after release()
   bool closeAfter = false;   ///< close without saying so beforehand
-  std::string raw = {};           ///< if not empty: sent instead of an answer, then the connection is closed
+  std::string raw = {};      ///< if not empty: sent instead of an answer, then the connection is closed
 };
 
 class FakeServer {

@@ -13,9 +13,9 @@ namespace terrane {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::ElementsAre;
 using testing::FakeReply;
 using testing::FakeServer;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// Collects answers by name, in order of arrival; waits with a generous limit, never for a fixed time.
@@ -377,7 +377,9 @@ TEST(FetchQueue, DelayedRequestsWaitTheirTime) {
 }
 
 TEST(FetchQueue, DestructionInTheMiddleOfEverythingCallsNothingBack) {
-  FakeServer server([](const std::string& target) { return FakeReply{.body = std::string(5000, 'x'), .hold = target.back() % 2 == 0}; });
+  FakeServer server([](const std::string& target) {
+    return FakeReply{.body = std::string(5000, 'x'), .hold = target.back() % 2 == 0};
+  });
   for (int round = 0; round < 20; ++round) {
     std::atomic<bool> destroyed{false};
     std::atomic<int> late{0};
@@ -411,7 +413,8 @@ TEST(FetchQueue, HammeredFromSeveralThreadsEveryRequestEndsOnce) {
   }
   for (std::thread& thread : threads) thread.join();
   const auto deadline = std::chrono::steady_clock::now() + 60s;
-  while (answered + cancelled < kThreads * kEach && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  while (answered + cancelled < kThreads * kEach && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::yield();
   EXPECT_EQ(answered + cancelled, kThreads * kEach);
   EXPECT_TRUE(waitForStatus(*queue, [](const auto& s) { return s.running == 0 && s.queued == 0; }));
   EXPECT_EQ(answered + cancelled, kThreads * kEach);

@@ -25,7 +25,8 @@ Flight parsed(std::string_view text) {
 }
 
 glm::dvec3 directionOf(const ViewPose& pose) {
-  return {std::cos(pose.latitude) * std::cos(pose.longitude), std::cos(pose.latitude) * std::sin(pose.longitude), std::sin(pose.latitude)};
+  return {std::cos(pose.latitude) * std::cos(pose.longitude), std::cos(pose.latitude) * std::sin(pose.longitude),
+          std::sin(pose.latitude)};
 }
 
 TEST(FlightFile, ReadsWhatAPersonWrites) {
@@ -51,25 +52,20 @@ TEST(FlightFile, EveryMistakeIsNamedWithItsLine) {
     const char* says;
     ErrorKind kind = ErrorKind::Malformed;
   };
-  for (const Case& c : {Case{"", "f:1", "no pose"},
-                        Case{"# only\n# comments\n", "f:2", "no pose"},
-                        Case{"0 1 2 3 4", "f:1", "pitch is missing"},
-                        Case{"0 1 2 3 4 5 6", "f:1", "more than six"},
-                        Case{"0 0 0 1 0 0\n\n1 0 0 x 0 0", "f:3", "altitude is no finite number: \"x\""},
-                        Case{"0 nan 0 1 0 0", "f:1", "longitude is no finite"},
-                        Case{"0 0 0 inf 0 0", "f:1", "altitude is no finite"},
-                        Case{"0 0 0 1e999 0 0", "f:1", "altitude is no finite"},
-                        Case{"0 0 0 1e20 0 0", "f:1", "altitude must be from"},
-                        Case{"0 0 90.5 1 0 0", "f:1", "latitude must be from -90 to 90"},
-                        Case{"0 0 0 1 361 0", "f:1", "heading must be"},
-                        Case{"0 0 0 1 0 -91", "f:1", "pitch must be"},
-                        Case{"-1 0 0 1 0 0", "f:1", "seconds must be"},
-                        Case{"1 0 0 1 0 0\n1 0 0 1 0 0", "f:2", "does not come after"},
-                        Case{"1 0 0 1 0 0\n0.5 0 0 1 0 0", "f:2", "does not come after"},
-                        Case{"1 0 0 1 0 0\nabove-ground", "f:2", "before the first pose"},
-                        Case{"above-ground yes\n0 0 0 1 0 0", "f:1", "stands alone"},
-                        Case{"0 0 0 1,5 0 0", "f:1", "altitude is no finite number"},
-                        Case{"# terrane flight 2\n0 0 0 1 0 0", "f:1", "version", ErrorKind::Unsupported}}) {
+  for (const Case& c :
+       {Case{"", "f:1", "no pose"}, Case{"# only\n# comments\n", "f:2", "no pose"},
+        Case{"0 1 2 3 4", "f:1", "pitch is missing"}, Case{"0 1 2 3 4 5 6", "f:1", "more than six"},
+        Case{"0 0 0 1 0 0\n\n1 0 0 x 0 0", "f:3", "altitude is no finite number: \"x\""},
+        Case{"0 nan 0 1 0 0", "f:1", "longitude is no finite"}, Case{"0 0 0 inf 0 0", "f:1", "altitude is no finite"},
+        Case{"0 0 0 1e999 0 0", "f:1", "altitude is no finite"}, Case{"0 0 0 1e20 0 0", "f:1", "altitude must be from"},
+        Case{"0 0 90.5 1 0 0", "f:1", "latitude must be from -90 to 90"},
+        Case{"0 0 0 1 361 0", "f:1", "heading must be"}, Case{"0 0 0 1 0 -91", "f:1", "pitch must be"},
+        Case{"-1 0 0 1 0 0", "f:1", "seconds must be"}, Case{"1 0 0 1 0 0\n1 0 0 1 0 0", "f:2", "does not come after"},
+        Case{"1 0 0 1 0 0\n0.5 0 0 1 0 0", "f:2", "does not come after"},
+        Case{"1 0 0 1 0 0\nabove-ground", "f:2", "before the first pose"},
+        Case{"above-ground yes\n0 0 0 1 0 0", "f:1", "stands alone"},
+        Case{"0 0 0 1,5 0 0", "f:1", "altitude is no finite number"},
+        Case{"# terrane flight 2\n0 0 0 1 0 0", "f:1", "version", ErrorKind::Unsupported}}) {
     const auto flight = parseFlight(c.text, "f");
     ASSERT_FALSE(flight) << c.text;
     EXPECT_EQ(flight.error().field, c.field) << c.text;
@@ -89,9 +85,10 @@ TEST(FlightFile, WhatIsWrittenReadsBackTheSame) {
     double seconds = 0;
     for (int i = 0; i < 20; ++i) {
       seconds += std::exp(8 * unit(random));
-      flight.points.push_back({seconds,
-                               {unit(random) * std::numbers::pi, unit(random) * std::numbers::pi / 2, std::exp(20 * unit(random)),
-                                unit(random) * std::numbers::pi, unit(random) * std::numbers::pi / 2}});
+      flight.points.push_back(
+          {seconds,
+           {unit(random) * std::numbers::pi, unit(random) * std::numbers::pi / 2, std::exp(20 * unit(random)),
+            unit(random) * std::numbers::pi, unit(random) * std::numbers::pi / 2}});
     }
     const std::string text = writeFlight(flight);
     const Flight back = parsed(text);
@@ -141,7 +138,8 @@ TEST(FlightFile, AnyBytesAreAFlightOrAnErrorWithALine) {
     }
     ++flights;
     for (const FlightPoint& point : flight->points) {
-      ASSERT_TRUE(std::isfinite(point.pose.longitude + point.pose.latitude + point.pose.altitudeMeters + point.pose.heading + point.pose.pitch));
+      ASSERT_TRUE(std::isfinite(point.pose.longitude + point.pose.latitude + point.pose.altitudeMeters +
+                                point.pose.heading + point.pose.pitch));
     }
     for (const double at : {-1.0, 0.0, flight->durationSeconds() / 3, flight->durationSeconds(), 1e300}) {
       const ViewPose pose = poseAt(*flight, at);
@@ -194,7 +192,8 @@ TEST(FlightFile, TheEndsHoldTheirPosesExactly) {
     EXPECT_EQ(pose.heading, expected.heading);
     EXPECT_EQ(pose.pitch, expected.pitch);
   }
-  EXPECT_EQ(poseAt(flight, 1.5).longitude, flight.points[0].pose.longitude) << "a vertical descent stays over its place to the last bit";
+  EXPECT_EQ(poseAt(flight, 1.5).longitude, flight.points[0].pose.longitude)
+      << "a vertical descent stays over its place to the last bit";
   EXPECT_EQ(poseAt(flight, std::nan("")).altitudeMeters, 1000);
 }
 
@@ -245,13 +244,15 @@ TEST(BuiltInFlight, TheOrbitGoesOnceAroundLookingAhead) {
       EXPECT_GT(glm::dot(ahead, glm::normalize(to - from)), 0.99);
     }
     EXPECT_NEAR(travelled, 2 * std::numbers::pi, 1e-6);
-    EXPECT_NEAR(glm::distance(directionOf(flight->points.front().pose), directionOf(flight->points.back().pose)), 0, 1e-9);
+    EXPECT_NEAR(glm::distance(directionOf(flight->points.front().pose), directionOf(flight->points.back().pose)), 0,
+                1e-9);
     EXPECT_TRUE(parseFlight(writeFlight(*flight), "f"));
   }
 }
 
 TEST(BuiltInFlight, UnknownNamesAndImpossiblePlacesNameTheFlag) {
-  for (const auto& flight : {builtInFlight("ascent", 0, 0), builtInFlight("descent", std::nan(""), 0), builtInFlight("orbit", 0, 2)}) {
+  for (const auto& flight :
+       {builtInFlight("ascent", 0, 0), builtInFlight("descent", std::nan(""), 0), builtInFlight("orbit", 0, 2)}) {
     ASSERT_FALSE(flight);
     EXPECT_EQ(flight.error().field, "--flight");
     EXPECT_EQ(flight.error().kind, ErrorKind::InvalidArgument);

@@ -11,8 +11,8 @@
 namespace terrane {
 namespace {
 
-using testing::SmallTileOptions;
 using testing::smallTile;
+using testing::SmallTileOptions;
 
 double hilly(const glm::dvec3& d) { return 800.0 * d.x * d.y + 500.0 * d.z * d.z * d.x - 300.0 * d.y; }
 
@@ -34,12 +34,14 @@ std::optional<double> bruteForceHeight(const Tile& tile, const glm::dvec3& direc
     const auto step = static_cast<long double>(stepMeters(tile.metadata.stepExponent));
     Vector p;
     for (int k = 0; k < 3; ++k) {
-      p[k] = step * static_cast<long double>(tile.metadata.origin[k] + tile.mesh.offsets[3 * vertex + static_cast<std::size_t>(k)]);
+      p[k] = step * static_cast<long double>(tile.metadata.origin[k] +
+                                             tile.mesh.offsets[3 * vertex + static_cast<std::size_t>(k)]);
     }
     return p;
   };
   for (std::size_t t = 0; t < tile.mesh.triangles.size(); t += 3) {
-    const Vector a = position(tile.mesh.triangles[t]), b = position(tile.mesh.triangles[t + 1]), c = position(tile.mesh.triangles[t + 2]);
+    const Vector a = position(tile.mesh.triangles[t]), b = position(tile.mesh.triangles[t + 1]),
+                 c = position(tile.mesh.triangles[t + 2]);
     const Vector normal = glm::cross(b - a, c - a);
     const long double along = glm::dot(normal, a) / glm::dot(normal, d);
     const Vector p = d * along;
@@ -62,11 +64,13 @@ TEST(GroundMesh, AgreesWithEveryTriangleTriedInHigherPrecision) {
     for (int level = 0; level <= maxLevel(radius); level += level < 3 ? 1 : 4) {
       for (const bool alternate : {false, true}) {
         const auto side = static_cast<double>(std::uint64_t{1} << level);
-        const FacePath path = FacePath::cubeTile(static_cast<int>(6 * unit(random)), level, static_cast<std::uint32_t>(side * unit(random)),
+        const FacePath path = FacePath::cubeTile(static_cast<int>(6 * unit(random)), level,
+                                                 static_cast<std::uint32_t>(side * unit(random)),
                                                  static_cast<std::uint32_t>(side * unit(random)));
         const double scale = std::min(1.0, radius / 1e5);
-        const Tile tile = smallTile(path, [scale](const glm::dvec3& d) { return scale * hilly(d); },
-                                    SmallTileOptions{radius, 8, alternate, true});
+        const Tile tile = smallTile(
+            path, [scale](const glm::dvec3& d) { return scale * hilly(d); },
+            SmallTileOptions{radius, 8, alternate, true});
         const GroundMesh mesh = GroundMesh::fromTile(tile);
         ASSERT_FALSE(mesh.empty());
         for (int i = 0; i < 60; ++i) {
@@ -108,13 +112,16 @@ TEST(GroundMesh, UsesTheDiagonalThatIsDrawn) {
   const auto spike = [&](const glm::dvec3& d) { return glm::dot(d, peak.direction) > 1 - 1e-12 ? 100.0 : 0.0; };
   const Place middle = placeIn(path, 0.375, 0.375);  // of the cell whose corner 00 is the peak
   SmallTileOptions options;
-  const auto rising = GroundMesh::fromTile(smallTile(path, spike, options)).heightMeters(middle.direction, middle.u, middle.v, testing::kMoonRadius);
+  const auto rising = GroundMesh::fromTile(smallTile(path, spike, options))
+                          .heightMeters(middle.direction, middle.u, middle.v, testing::kMoonRadius);
   EXPECT_NEAR(*rising, 50.0, 1.0) << "the diagonal 00-11 goes up to the peak";
   const Place beside = placeIn(path, 0.125, 0.375);  // of the cell whose corner 10 is the peak
-  const auto besideRising = GroundMesh::fromTile(smallTile(path, spike, options)).heightMeters(beside.direction, beside.u, beside.v, testing::kMoonRadius);
+  const auto besideRising = GroundMesh::fromTile(smallTile(path, spike, options))
+                                .heightMeters(beside.direction, beside.u, beside.v, testing::kMoonRadius);
   EXPECT_NEAR(*besideRising, 0.0, 1.0);
   options.alternateDiagonals = true;  // the cell (0, 1) has the other diagonal, 10-01
-  const auto besideFalling = GroundMesh::fromTile(smallTile(path, spike, options)).heightMeters(beside.direction, beside.u, beside.v, testing::kMoonRadius);
+  const auto besideFalling = GroundMesh::fromTile(smallTile(path, spike, options))
+                                 .heightMeters(beside.direction, beside.u, beside.v, testing::kMoonRadius);
   EXPECT_NEAR(*besideFalling, 50.0, 1.0);
 }
 
@@ -138,7 +145,8 @@ TEST(GroundMesh, RefusesIncompleteGrids) {
 }
 
 TEST(GroundMesh, KeepsSixBytesAVertex) {
-  const GroundMesh mesh = GroundMesh::fromTile(smallTile(*FacePath::parse("cube/1/2"), hilly, SmallTileOptions{testing::kMoonRadius, 64, false, false}));
+  const GroundMesh mesh = GroundMesh::fromTile(
+      smallTile(*FacePath::parse("cube/1/2"), hilly, SmallTileOptions{testing::kMoonRadius, 64, false, false}));
   EXPECT_LE(mesh.bytes(), 6u * 65 * 65 + 64 * 64 / 8 + 200);
 }
 

@@ -26,8 +26,10 @@ Tile smallTile(const FacePath& path, const HeightFormula& height, const SmallTil
   LatticePoint lowest(std::numeric_limits<std::int64_t>::max());
   for (int j = 0; j < row; ++j) {
     for (int i = 0; i < row; ++i) {
-      const auto column = static_cast<std::uint64_t>(path.column()) * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(i);
-      const auto line = static_cast<std::uint64_t>(path.row()) * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(j);
+      const auto column =
+          static_cast<std::uint64_t>(path.column()) * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(i);
+      const auto line =
+          static_cast<std::uint64_t>(path.row()) * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(j);
       const glm::dvec3 direction = cubeGridDirection(path.face(), gridLevel, column, line);
       points.push_back(roundToLattice((options.radiusMeters + height(direction)) * direction, exponent));
       lowest = glm::min(lowest, points.back());

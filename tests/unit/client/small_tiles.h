@@ -1,6 +1,6 @@
 #pragma once
-// Tiles small enough to make by the hundred: a few cells, heights from a formula, on the lattice as real ones are; and a scene of one
-// body of them.
+// Tiles small enough to make by the hundred: a few cells, heights from a formula, on the lattice as real ones are; and
+// a scene of one body of them.
 
 #include <functional>
 #include <string>

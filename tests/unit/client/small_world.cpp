@@ -34,7 +34,8 @@ std::vector<WantedTile> together(std::initializer_list<std::vector<WantedTile>> 
       if (seen.insert(tile.path).second) all.push_back(tile);
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.path.level() < b.path.level(); });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.path.level() < b.path.level(); });
   return all;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// A fake server of small tiles with one switch for everything that can go wrong, and a viewer without a picture that steps a TileStream
-// frame by frame as the GL thread would.
+// A fake server of small tiles with one switch for everything that can go wrong, and a viewer without a picture that
+// steps a TileStream frame by frame as the GL thread would.
 
 #include <condition_variable>
 #include <map>

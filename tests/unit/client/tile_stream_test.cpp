@@ -18,7 +18,9 @@ using namespace terrane::testing;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-std::string target(const FacePath& tile, const std::string& revision = kRevision) { return tileTarget({revision, "moon", tile}); }
+std::string target(const FacePath& tile, const std::string& revision = kRevision) {
+  return tileTarget({revision, "moon", tile});
+}
 
 TEST(TileStream, WrongServerNamesTheFlag) {
   const auto stream = TileStream::open(quickOptions("moon.example"), nullptr);
@@ -73,8 +75,8 @@ TEST(TileStream, AncestorsAndLeavesAreAskedForAtOnceCoarsestFirstThenLargestErro
   world.server().releaseAll();
   ASSERT_TRUE(world.server().waitForRequests(7));
   EXPECT_THAT(world.server().targets(),
-              ElementsAre("/v1/scene.json", target(path("cube/0")), target(path("cube/1")), target(path("cube/0/2")), target(path("cube/0/1")),
-                          target(path("cube/0/13")), target(path("cube/0/12"))));
+              ElementsAre("/v1/scene.json", target(path("cube/0")), target(path("cube/1")), target(path("cube/0/2")),
+                          target(path("cube/0/1")), target(path("cube/0/13")), target(path("cube/0/12"))));
 }
 
 TEST(TileStream, HandsOverWithinTheBudgetCoarsestFirst) {
@@ -178,15 +180,17 @@ TEST(TileStream, WantedTilesOvertakeThoseInTheirGrace) {
   world.server().releaseAll();
   ASSERT_TRUE(world.server().waitForRequests(8));
   EXPECT_THAT(world.server().targets(),
-              ElementsAre("/v1/scene.json", target(path("cube/0")), target(path("cube/4")), target(path("cube/4/3")), target(path("cube/4/30")),
-                          target(path("cube/4/301")), target(path("cube/0/1")), target(path("cube/0/12"))));
+              ElementsAre("/v1/scene.json", target(path("cube/0")), target(path("cube/4")), target(path("cube/4/3")),
+                          target(path("cube/4/30")), target(path("cube/4/301")), target(path("cube/0/1")),
+                          target(path("cube/0/12"))));
 }
 
 TEST(TileStream, SteppingBackAndForthOverAThresholdFetchesAndEvictsNothingTwice) {
   SmallWorld world;
   world.start();
   const auto coarse = chain(path("cube/0/01"));
-  const auto fine = together({chain(path("cube/0/010")), chain(path("cube/0/011")), chain(path("cube/0/012")), chain(path("cube/0/013"))});
+  const auto fine = together(
+      {chain(path("cube/0/010")), chain(path("cube/0/011")), chain(path("cube/0/012")), chain(path("cube/0/013"))});
   StreamOptions options = quickOptions(world.url());
   options.residentBudgetBytes = fine.size() * (SmallViewer::kGpuBytes + 1000);
   SmallViewer viewer(options);
@@ -235,7 +239,8 @@ TEST(TileStream, TheBudgetHoldsAndTheLeastRecentlyWantedGoesFirst) {
       EXPECT_LE(viewer.stream().status().residentBytes, options.residentBudgetBytes);
       for (const WantedTile& tile : wanted) EXPECT_TRUE(viewer.stream().resident(tile.path)) << "never what is wanted";
       for (const FacePath& tile : viewer.uploaded) {
-        EXPECT_TRUE(tile.level() == 0 || viewer.uploaded.contains(tile.parent())) << "never a parent of what stays: " << tile.text();
+        EXPECT_TRUE(tile.level() == 0 || viewer.uploaded.contains(tile.parent()))
+            << "never a parent of what stays: " << tile.text();
       }
     }
   }
@@ -296,7 +301,8 @@ TEST(TileStream, TheGroundIsThatOfTheFinestResidentTile) {
   const FacePath leaf = path("cube/2/031201");
   const double side = 64;
   const glm::dvec3 inside = cubeDirection(2, 2 * (leaf.column() + 0.3) / side - 1, 2 * (leaf.row() + 0.6) / side - 1);
-  const glm::dvec3 elsewhere = cubeDirection(2, -2 * (leaf.column() + 0.3) / side + 1, 2 * (leaf.row() + 0.6) / side - 1);
+  const glm::dvec3 elsewhere =
+      cubeDirection(2, -2 * (leaf.column() + 0.3) / side + 1, 2 * (leaf.row() + 0.6) / side - 1);
   EXPECT_FALSE(viewer.stream().groundBelow(inside));
   ASSERT_TRUE(viewer.settle(chain(leaf)));
   const auto fine = viewer.stream().groundBelow(3.0 * inside);
@@ -310,7 +316,8 @@ TEST(TileStream, TheGroundIsThatOfTheFinestResidentTile) {
   EXPECT_EQ(coarse->level, 0);
   viewer.frame(chain(leaf.parent()));
   EXPECT_EQ(viewer.stream().groundBelow(inside)->level, 5) << "after the leaf was evicted";
-  for (const glm::dvec3& nothing : {glm::dvec3(0), glm::dvec3(std::nan(""), 0, 1), -inside}) EXPECT_FALSE(viewer.stream().groundBelow(nothing));
+  for (const glm::dvec3& nothing : {glm::dvec3(0), glm::dvec3(std::nan(""), 0, 1), -inside})
+    EXPECT_FALSE(viewer.stream().groundBelow(nothing));
 }
 
 TEST(TileStream, AnotherBodyStartsEmpty) {

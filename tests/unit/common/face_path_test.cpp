@@ -64,8 +64,9 @@ std::vector<FacePath> allTiles(int level) {
 
 FacePath randomTile(std::mt19937_64& random, int level) {
   const std::uint32_t mask = static_cast<std::uint32_t>((std::uint64_t{1} << level) - 1);
-  return FacePath::cubeTile(static_cast<int>(random() % 6), level, static_cast<std::uint32_t>(random()) & mask,
-                            static_cast<std::uint32_t>(random()) & mask);
+  const int face = static_cast<int>(random() % 6);
+  const std::uint32_t column = static_cast<std::uint32_t>(random()) & mask;
+  return FacePath::cubeTile(face, level, column, static_cast<std::uint32_t>(random()) & mask);
 }
 
 std::string parseError(std::string_view text) {
@@ -245,7 +246,8 @@ TEST(FacePath, ADiagonalNeighbourIsTheSideNeighboursNeighbour) {
     // Half of them at the edges of their face, where it matters.
     FacePath tile = randomTile(random, level);
     const auto atEdge = [&](std::uint32_t x) { return random() % 2 ? x : (random() % 2 ? 0u : last); };
-    tile = FacePath::cubeTile(tile.face(), level, atEdge(tile.column()), atEdge(tile.row()));
+    const std::uint32_t column = atEdge(tile.column());
+    tile = FacePath::cubeTile(tile.face(), level, column, atEdge(tile.row()));
     for (const Side side : kCorners) {
       const std::optional<FacePath> diagonal = tile.neighbour(side);
       const Side u = side == Side::UMinVMin || side == Side::UMinVMax ? Side::UMin : Side::UMax;

@@ -96,10 +96,10 @@ TEST(Lattice, SixteenBitsHoldEveryTilesFootprint) {
       for (int i = 0; i < 14; ++i) {
         const std::uint32_t middle = level ? 1u << (level - 1) : 0u;
         const std::uint32_t mask = static_cast<std::uint32_t>((std::uint64_t{1} << level) - 1);
-        const FacePath path = i < 2 ? FacePath::cubeTile(4 * i, level, middle, middle)
-                                    : FacePath::cubeTile(static_cast<int>(random() % 6), level,
-                                                         static_cast<std::uint32_t>(random()) & mask,
-                                                         static_cast<std::uint32_t>(random()) & mask);
+        const int face = i < 2 ? 4 * i : static_cast<int>(random() % 6);
+        const std::uint32_t column = i < 2 ? middle : static_cast<std::uint32_t>(random()) & mask;
+        const std::uint32_t row = i < 2 ? middle : static_cast<std::uint32_t>(random()) & mask;
+        const FacePath path = FacePath::cubeTile(face, level, column, row);
         const double extent = footprintExtentSteps(path, radius);
         if (extent > worst) {
           worst = extent;

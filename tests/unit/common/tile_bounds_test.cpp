@@ -256,8 +256,7 @@ TEST(TileBounds, EveryBuildComputesTheSameBits) {
   EXPECT_EQ(hash, 9357735559605596566u);
 }
 
-// ---- horizon
-// -------------------------------------------------------------------------------------------------------------------
+// ---- horizon ----
 
 /// Hidden if the segment from the camera to the point enters the open ball of the given radius about the origin.
 bool segmentIsBlocked(const Vec& camera, const Vec& p, long double radius) {
@@ -285,7 +284,7 @@ Vec randomCamera(Random& random, const Vec& horizonPoint, double occluder, doubl
   const long double angle =
       random.below(2) ? reach * (1 + 1e-3L * (random.unit() - 0.3L)) : std::acos(random.between(-1, 1));
   const Vec axis = horizonPoint * (1 / pointLength);
-  Vec side = cross(axis, Vec(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)));
+  Vec side = cross(axis, Vec{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)});
   side = side * (1 / length(side));
   return (axis * std::cos(angle) + side * std::sin(angle)) * distance;
 }
@@ -336,7 +335,7 @@ TEST(TileBounds, TheHorizonPointMissesFewHiddenTiles) {
     const TileBounds bounds = tileBounds(c.path, c.radius, c.heights, occluder);
     ASSERT_TRUE(std::isfinite(bounds.horizonPoint.x));
     const Vec axis(bounds.sphere.center);
-    Vec side = cross(axis, Vec(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)));
+    Vec side = cross(axis, Vec{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)});
     side = side * (1 / length(side));
     const long double altitude = std::pow(10.0, random.between(1.0, 7.0));
     const long double angle = 3.1415926L * random.unit();
@@ -381,8 +380,7 @@ TEST(TileBounds, HeightsThatReachTheBodysCentreAreStillBounded) {
   }
 }
 
-// ---- lowest surface
-// ------------------------------------------------------------------------------------------------------------
+// ---- lowest surface ----
 
 /// Distance from the origin to a triangle.
 long double distanceToTriangle(const Vec& a, const Vec& b, const Vec& c) {

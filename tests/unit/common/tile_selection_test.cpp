@@ -32,12 +32,14 @@ SelectionBody moon(int deepest = 24) {
 }
 
 /// The true ground of these tests: a smooth swell, so that heights tighten with the level as a real body's do.
-HeightRange heightsOf(const FacePath& path) {
+HeightRange heightsOf(const FacePath& path, double reachPerWidth) {
   const double width = nominalTileWidthMeters(kMoon, path.level());
   const double middle = 2000 * std::sin(0.7 * path.face() + 3.0 * path.ancestor(std::min(path.level(), 3)).row());
-  const double reach = std::min(7000.0, 0.1 * width);
+  const double reach = std::min(7000.0, reachPerWidth * width);
   return {middle - reach, middle + reach};
 }
+HeightRange ownHeightsOf(const FacePath& path) { return heightsOf(path, 0.05); }
+HeightRange subtreeHeightsOf(const FacePath& path) { return heightsOf(path, 0.2); }
 
 /// Tiles that are there. A tile's parent is always there too, as the client keeps it.
 class Residents {
@@ -45,7 +47,7 @@ class Residents {
   void add(const FacePath& path) {
     for (int level = 0; level <= path.level(); ++level) {
       const FacePath ancestor = path.ancestor(level);
-      tiles_[ancestor] = ResidentTile{heightsOf(ancestor)};
+      tiles_[ancestor] = ResidentTile{subtreeHeightsOf(ancestor), ownHeightsOf(ancestor)};
     }
   }
   void addRoots() {

@@ -18,11 +18,14 @@ TileMesh sampleMesh(int cells, bool skirts = true, bool colors = true) {
   return sampleTile({.cellsPerEdge = cells, .skirts = skirts, .colors = colors}).mesh;
 }
 
-DracoAttributeIds idsOf(const DracoBuffer& buffer) { return {buffer.positionId, buffer.normalId, buffer.colorId, buffer.gridId}; }
+DracoAttributeIds idsOf(const DracoBuffer& buffer) {
+  return {buffer.positionId, buffer.normalId, buffer.colorId, buffer.gridId};
+}
 
-/// Longest difference between a unit normal and what it decodes to. A rounded octahedral coordinate is off by half of 1/c, c =
-/// 2^(bits-1) - 1 steps from centre to rim; the third follows from the two, and where it would become negative one of them gives way by
-/// a whole step; normalising stretches by sqrt(3) at most: sqrt(3) sqrt(2^2 + 1 + 1) / 2 = 2.13, and as much again for giving way.
+/// Longest difference between a unit normal and what it decodes to. A rounded octahedral coordinate is off by half of
+/// 1/c, c = 2^(bits-1) - 1 steps from centre to rim; the third follows from the two, and where it would become negative
+/// one of them gives way by a whole step; normalising stretches by sqrt(3) at most: sqrt(3) sqrt(2^2 + 1 + 1) / 2
+/// = 2.13, and as much again for giving way.
 double octahedralError(int bits) { return 3.2 / (std::exp2(bits - 1) - 1); }
 
 TEST(DracoMesh, RoundTripKeepsEveryInteger) {
@@ -36,7 +39,8 @@ TEST(DracoMesh, RoundTripKeepsEveryInteger) {
         EXPECT_EQ(encoded->triangleCount, mesh.triangles.size() / 3);
         const auto decoded = decodeDraco(encoded->bytes, idsOf(*encoded), {});
         ASSERT_TRUE(decoded.has_value()) << decoded.error().text();
-        EXPECT_TRUE(sameMesh(mesh, *decoded, octahedralError(8))) << cells << " cells, skirts " << skirts << ", colours " << colors;
+        EXPECT_TRUE(sameMesh(mesh, *decoded, octahedralError(8)))
+            << cells << " cells, skirts " << skirts << ", colours " << colors;
       }
 }
 
@@ -75,7 +79,8 @@ TEST(DracoMesh, NormalsStayWithinTheOctahedralBound) {
     const auto decoded = decodeDraco(encoded->bytes, idsOf(*encoded), {});
     ASSERT_TRUE(decoded.has_value()) << decoded.error().text();
     EXPECT_TRUE(sameMesh(mesh, *decoded, octahedralError(bits))) << bits << " bits, seed " << kSeed;
-    EXPECT_FALSE(sameMesh(mesh, *decoded, octahedralError(bits) / 4)) << "the bound is far from the error: " << bits << " bits";
+    EXPECT_FALSE(sameMesh(mesh, *decoded, octahedralError(bits) / 4))
+        << "the bound is far from the error: " << bits << " bits";
   }
 }
 
@@ -137,6 +142,35 @@ TEST(DracoMesh, DecoderNamesLimitsBeforeItDecodes) {
   EXPECT_EQ(kindWithin({exact.maxVertices, exact.maxTriangles, exact.maxBytes - 1}), ErrorKind::TooLarge);
 }
 
+TEST(DracoMesh, MoreBytesThanItsVerticesCanNeedAreRefused) {
+  // A table of 64 symbols costs a hostile byte, so that bytes must be bounded by what they may decode to.
+  const auto encoded = encodeDraco(sampleMesh(8), {});
+  ASSERT_TRUE(encoded.has_value());
+  std::vector<std::uint8_t> bytes = encoded->bytes;
+  const std::size_t most = kMaxDracoBytesBesides + kMaxDracoBytesPerVertex * encoded->vertexCount;
+  bytes.resize(most, 0xFF);
+  EXPECT_TRUE(decodeDraco(bytes, idsOf(*encoded), {}).has_value());
+  bytes.push_back(0xFF);
+  EXPECT_EQ(decodeDraco(bytes, idsOf(*encoded), {}).error().kind, ErrorKind::Malformed);
+}
+
+TEST(DracoMesh, NoiseStaysWellBelowTheMostBytesThatADecoderTakes) {
+  constexpr unsigned kSeed = 17;
+  std::mt19937 random(kSeed);
+  std::normal_distribution<float> gauss;
+  TileMesh mesh = sampleMesh(64);
+  for (auto& offset : mesh.offsets) offset = static_cast<std::uint16_t>(random() >> 16);
+  for (auto& color : mesh.colors) color = static_cast<std::uint8_t>(random() >> 24);
+  for (auto& component : mesh.normals) component = gauss(random);
+  std::shuffle(mesh.gridIndices.begin(), mesh.gridIndices.end(), random);
+  for (const int speed : {0, 7, 10}) {
+    const auto encoded = encodeDraco(mesh, {.speed = speed, .normalBits = 16});
+    ASSERT_TRUE(encoded.has_value()) << encoded.error().text();
+    EXPECT_LT(encoded->bytes.size(), kMaxDracoBytesBesides + 16 * mesh.vertexCount()) << "speed " << speed;
+    EXPECT_TRUE(decodeDraco(encoded->bytes, idsOf(*encoded), {}).has_value());
+  }
+}
+
 TEST(DracoMesh, DecoderRefusesAttributesThatWereNotAnnounced) {
   const auto encoded = encodeDraco(sampleMesh(4), {});
   ASSERT_TRUE(encoded.has_value());
@@ -144,7 +178,8 @@ TEST(DracoMesh, DecoderRefusesAttributesThatWereNotAnnounced) {
   EXPECT_TRUE(decodeDraco(encoded->bytes, ids, {}).has_value());
   EXPECT_FALSE(decodeDraco(encoded->bytes, {ids.position, ids.normal, -1, ids.grid}, {}).has_value()) << "one too many";
   EXPECT_FALSE(decodeDraco(encoded->bytes, {ids.position, ids.normal, ids.color, -1}, {}).has_value());
-  EXPECT_FALSE(decodeDraco(encoded->bytes, {ids.normal, ids.position, ids.color, ids.grid}, {}).has_value()) << "types exchanged";
+  EXPECT_FALSE(decodeDraco(encoded->bytes, {ids.normal, ids.position, ids.color, ids.grid}, {}).has_value())
+      << "types exchanged";
   EXPECT_FALSE(decodeDraco(encoded->bytes, {ids.position, ids.normal, ids.grid, ids.color}, {}).has_value());
   EXPECT_FALSE(decodeDraco(encoded->bytes, {ids.position, ids.normal, ids.color, 31}, {}).has_value());
 }
@@ -176,7 +211,8 @@ TEST(DracoMesh, DamagedBytesGiveAnErrorOrASoundMesh) {
   for (unsigned seed = 0; seed < 10000; ++seed) {
     std::mt19937 random(seed);
     std::vector<std::uint8_t> bytes = encoded->bytes;
-    for (auto flips = 1 + random() % 4; flips > 0; --flips) bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
+    for (auto flips = 1 + random() % 4; flips > 0; --flips)
+      bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
     const auto decoded = decodeDraco(bytes, idsOf(*encoded), {});
     if (!decoded) continue;
     ++survived;
@@ -203,7 +239,8 @@ TEST(DracoMesh, LyingCountsAreRefused) {
             if (rest < 0x80) break;
           }
         } else {
-          bytes.insert(bytes.end(), encoded->bytes.begin() + static_cast<std::ptrdiff_t>(begin), encoded->bytes.begin() + static_cast<std::ptrdiff_t>(at));
+          bytes.insert(bytes.end(), encoded->bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+                       encoded->bytes.begin() + static_cast<std::ptrdiff_t>(at));
         }
       }
       bytes.insert(bytes.end(), encoded->bytes.begin() + static_cast<std::ptrdiff_t>(at), encoded->bytes.end());

@@ -94,9 +94,12 @@ TEST(GltfTile, DocumentIsWhatGltfClientsExpect) {
   const nlohmann::json& primitive = json["meshes"][0]["primitives"][0];
   const nlohmann::json& draco = primitive["extensions"]["KHR_draco_mesh_compression"];
   EXPECT_EQ(primitive["mode"], 4);
-  for (const auto& [name, id] : draco["attributes"].items()) EXPECT_TRUE(primitive["attributes"].contains(name)) << name;
+  for (const auto& [name, id] : draco["attributes"].items())
+    EXPECT_TRUE(primitive["attributes"].contains(name)) << name;
 
-  const auto accessor = [&](const char* name) { return json["accessors"][primitive["attributes"][name].get<std::size_t>()]; };
+  const auto accessor = [&](const char* name) {
+    return json["accessors"][primitive["attributes"][name].get<std::size_t>()];
+  };
   const TileMesh mesh = decodeTile(glb)->mesh;
   std::vector<int> low(3, 65536), high(3, -1);
   for (std::size_t i = 0; i < mesh.offsets.size(); ++i) {
@@ -111,7 +114,8 @@ TEST(GltfTile, DocumentIsWhatGltfClientsExpect) {
   EXPECT_EQ(accessor("_GRID")["componentType"], kUnsignedShort);
   EXPECT_EQ(accessor("COLOR_0")["componentType"], kUnsignedByte);
   EXPECT_EQ(accessor("COLOR_0")["normalized"], true);
-  for (const char* name : {"POSITION", "NORMAL", "COLOR_0", "_GRID"}) EXPECT_EQ(accessor(name)["count"], mesh.vertexCount());
+  for (const char* name : {"POSITION", "NORMAL", "COLOR_0", "_GRID"})
+    EXPECT_EQ(accessor(name)["count"], mesh.vertexCount());
   EXPECT_EQ(json["accessors"][primitive["indices"].get<std::size_t>()]["count"], mesh.triangles.size());
   for (const auto& each : json["accessors"]) EXPECT_FALSE(each.contains("bufferView")) << "the data is Draco's";
   EXPECT_EQ(json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"], nlohmann::json::parse("[0.4,0.4,0.4,1]"));
@@ -124,7 +128,8 @@ TEST(GltfTile, NumbersAreShortAndWithoutNegativeZero) {
   tile.metadata.geometricErrorMeters = 0.1;
   tile.metadata.sphere = {{-0.0, 0.0, 1e300 * 1e-300}, 4503599627370497.5e-6};
   const std::string text = textOf(*encodeTile(tile, {}));
-  for (const char* negativeZero : {"-0,", "-0]", "-0.0", "-0}", "-0e"}) EXPECT_EQ(text.find(negativeZero), std::string::npos) << text;
+  for (const char* negativeZero : {"-0,", "-0]", "-0.0", "-0}", "-0e"})
+    EXPECT_EQ(text.find(negativeZero), std::string::npos) << text;
   EXPECT_NE(text.find("\"geometricError\":0.1,"), std::string::npos) << text;
   EXPECT_NE(text.find("\"origin\":[1,0,-3]"), std::string::npos) << text;
   EXPECT_NE(text.find("\"step\":1.1920928955078125e-07,"), std::string::npos) << text;
@@ -135,7 +140,8 @@ TEST(GltfTile, OriginsBeyond32BitsAreExactIntegers) {
   tile.metadata.origin = {4503599627370495, -4503599627370495, 4294967297};
   const auto glb = encodeTile(tile, {});
   ASSERT_TRUE(glb.has_value());
-  EXPECT_EQ(jsonOf(*glb)["nodes"][0]["extras"]["terrane"]["origin"].dump(), "[4503599627370495,-4503599627370495,4294967297]");
+  EXPECT_EQ(jsonOf(*glb)["nodes"][0]["extras"]["terrane"]["origin"].dump(),
+            "[4503599627370495,-4503599627370495,4294967297]");
   EXPECT_EQ(decodeTile(*glb)->metadata.origin, tile.metadata.origin);
 }
 

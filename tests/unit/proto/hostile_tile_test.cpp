@@ -80,7 +80,8 @@ TEST(HostileTile, CutWithAnHonestLengthItIsAnErrorToo) {
 
 TEST(HostileTile, EveryWordOfTheContainerMayLie) {
   const std::size_t jsonBytes = unpackGlb(sampleGlb())->json.size();
-  const std::array words{std::size_t{0}, std::size_t{4}, std::size_t{8}, std::size_t{12}, std::size_t{16}, 20 + jsonBytes, 24 + jsonBytes};
+  const std::array words{std::size_t{0},  std::size_t{4}, std::size_t{8}, std::size_t{12},
+                         std::size_t{16}, 20 + jsonBytes, 24 + jsonBytes};
   for (const std::size_t at : words) {
     for (const std::uint32_t lie : {0u, 1u, 2u, 3u, 4u, 0x7FFFFFFCu, 0x80000000u, 0xFFFFFFFCu, 0xFFFFFFFFu}) {
       std::vector<std::uint8_t> glb = sampleGlb();
@@ -95,7 +96,8 @@ TEST(HostileTile, FlippedBitsGiveAnErrorOrASoundTile) {
   for (unsigned seed = 0; seed < 10000; ++seed) {
     std::mt19937 random(seed);
     std::vector<std::uint8_t> glb = sampleGlb();
-    for (auto flips = 1 + random() % 3; flips > 0; --flips) glb[random() % glb.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
+    for (auto flips = 1 + random() % 3; flips > 0; --flips)
+      glb[random() % glb.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
     const auto tile = decodeTile(glb);
     if (!tile) continue;
     ASSERT_NO_FATAL_FAILURE(expectSound(*tile)) << "seed " << seed;
@@ -179,9 +181,11 @@ TEST(HostileTile, EveryMemberOfTheMetadataIsNeeded) {
 
 TEST(HostileTile, NoFileIsOpened) {
   // A pipe that nobody writes to: whoever opens it for reading waits for ever.
-  const std::string pipe = (std::filesystem::temp_directory_path() / ("terrane_pipe_" + std::to_string(::getpid()))).string();
+  const std::string pipe =
+      (std::filesystem::temp_directory_path() / ("terrane_pipe_" + std::to_string(::getpid()))).string();
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  for (const std::string& uri : {pipe, "file://" + pipe, std::string("/etc/passwd"), std::string("../../../../etc/passwd")}) {
+  for (const std::string& uri :
+       {pipe, "file://" + pipe, std::string("/etc/passwd"), std::string("../../../../etc/passwd")}) {
     EXPECT_EQ(refusalWith("/buffers/0/uri", uri), (Refusal{ErrorKind::Unsupported, "json.buffers[0].uri"}));
     nlohmann::json json = document();
     json["images"] = {{{"uri", uri}}};
@@ -194,15 +198,18 @@ TEST(HostileTile, BombsAreRefusedBeforeTheyAreParsed) {
   EXPECT_EQ(refusalOf(withDocument(std::string(60000, '['))), (Refusal{ErrorKind::TooLarge, "json"}));
   EXPECT_EQ(refusalOf(withDocument(std::string(100000, ' '))), (Refusal{ErrorKind::TooLarge, "json"}));
   EXPECT_EQ(refusalOf(std::vector<std::uint8_t>(16u << 20)), (Refusal{ErrorKind::TooLarge, "header"}));
-  for (const std::string text : {"", "{", "[1,2", "{\"a\":1e999}", "{\"a\":\"\xc0\x80\"}", "nul", "{\"a\":NaN}", "{}garbage"}) {
+  for (const std::string text :
+       {"", "{", "[1,2", "{\"a\":1e999}", "{\"a\":\"\xc0\x80\"}", "nul", "{\"a\":NaN}", "{}garbage"}) {
     EXPECT_EQ(refusalOf(withDocument(text)), (Refusal{ErrorKind::Malformed, "json"})) << text;
   }
 }
 
 TEST(HostileTile, AnyMemberMayBeOfAnyType) {
   const nlohmann::json flat = document().flatten();
-  const std::array values{nlohmann::json(nullptr), nlohmann::json(true), nlohmann::json(-1), nlohmann::json(1e308), nlohmann::json(""),
-                          nlohmann::json::array(), nlohmann::json::object(), nlohmann::json(18446744073709551615ull)};
+  const std::array values{nlohmann::json(nullptr),  nlohmann::json(true),
+                          nlohmann::json(-1),       nlohmann::json(1e308),
+                          nlohmann::json(""),       nlohmann::json::array(),
+                          nlohmann::json::object(), nlohmann::json(18446744073709551615ull)};
   for (const auto& [pointer, old] : flat.items()) {
     for (const auto& value : values) {
       nlohmann::json json = document();

@@ -42,7 +42,8 @@ class Sampler {
     const auto unit = static_cast<std::uint32_t>(1024 / settings_.cellsPerEdge);
     const auto x = static_cast<std::uint32_t>(i + 4) * unit, y = static_cast<std::uint32_t>(j + 4) * unit;
     double sum = 0, amplitude = 0.5;
-    for (std::uint32_t shift = 9; shift >= 3; --shift, amplitude *= 0.5) sum += amplitude * valueNoise(x, y, shift, settings_.seed);
+    for (std::uint32_t shift = 9; shift >= 3; --shift, amplitude *= 0.5)
+      sum += amplitude * valueNoise(x, y, shift, settings_.seed);
     return sum * settings_.roughness * width_;
   }
 
@@ -68,7 +69,8 @@ class MeshBuilder {
   void add(const glm::dvec3& position, const glm::dvec3& normal, std::uint8_t shade, int stepExponentOfTile) {
     points_.push_back(roundToLattice(position, stepExponentOfTile));
     for (int axis = 0; axis < 3; ++axis) mesh_.normals.push_back(static_cast<float>(normal[axis]));
-    mesh_.colors.insert(mesh_.colors.end(), {shade, static_cast<std::uint8_t>(shade * 7 / 8), static_cast<std::uint8_t>(shade / 2)});
+    mesh_.colors.insert(mesh_.colors.end(),
+                        {shade, static_cast<std::uint8_t>(shade * 7 / 8), static_cast<std::uint8_t>(shade / 2)});
     mesh_.gridIndices.push_back(static_cast<std::uint16_t>(mesh_.gridIndices.size()));
   }
   void quad(int a, int b, int c, int d) {
@@ -148,7 +150,8 @@ using Triangle = std::array<std::uint16_t, 3>;
 std::vector<Triangle> canonicalTriangles(const TileMesh& mesh) {
   std::vector<Triangle> triangles;
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
-    Triangle t{mesh.gridIndices[mesh.triangles[i]], mesh.gridIndices[mesh.triangles[i + 1]], mesh.gridIndices[mesh.triangles[i + 2]]};
+    Triangle t{mesh.gridIndices[mesh.triangles[i]], mesh.gridIndices[mesh.triangles[i + 1]],
+               mesh.gridIndices[mesh.triangles[i + 2]]};
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     triangles.push_back(t);
   }
@@ -159,7 +162,8 @@ std::vector<Triangle> canonicalTriangles(const TileMesh& mesh) {
 std::vector<std::size_t> orderByGridIndex(const TileMesh& mesh) {
   std::vector<std::size_t> order(mesh.vertexCount());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return mesh.gridIndices[a] < mesh.gridIndices[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return mesh.gridIndices[a] < mesh.gridIndices[b]; });
   return order;
 }
 
@@ -179,7 +183,8 @@ bool sameMesh(const TileMesh& expected, const TileMesh& actual, double normalTol
     for (std::size_t c = 0; c < 3; ++c) {
       if (expected.offsets[3 * a + c] != actual.offsets[3 * b + c]) return false;
       if (!expected.colors.empty() && expected.colors[3 * a + c] != actual.colors[3 * b + c]) return false;
-      const double d = static_cast<double>(expected.normals[3 * a + c]) - static_cast<double>(actual.normals[3 * b + c]);
+      const double d =
+          static_cast<double>(expected.normals[3 * a + c]) - static_cast<double>(actual.normals[3 * b + c]);
       difference += d * d;
     }
     if (!(difference <= normalTolerance * normalTolerance)) return false;
@@ -191,9 +196,10 @@ bool sameMetadata(const TileMetadata& a, const TileMetadata& b) {
   return a.path == b.path && a.stepExponent == b.stepExponent && a.origin == b.origin &&
          same(a.heights.minMeters, b.heights.minMeters) && same(a.heights.maxMeters, b.heights.maxMeters) &&
          same(a.subtreeHeights.minMeters, b.subtreeHeights.minMeters) &&
-         same(a.subtreeHeights.maxMeters, b.subtreeHeights.maxMeters) && same(a.geometricErrorMeters, b.geometricErrorMeters) &&
-         same(a.sphere.center, b.sphere.center) && same(a.sphere.radiusMeters, b.sphere.radiusMeters) &&
-         same(a.horizonPoint, b.horizonPoint) && a.cellsPerEdge == b.cellsPerEdge && a.skirtMeters == b.skirtMeters;
+         same(a.subtreeHeights.maxMeters, b.subtreeHeights.maxMeters) &&
+         same(a.geometricErrorMeters, b.geometricErrorMeters) && same(a.sphere.center, b.sphere.center) &&
+         same(a.sphere.radiusMeters, b.sphere.radiusMeters) && same(a.horizonPoint, b.horizonPoint) &&
+         a.cellsPerEdge == b.cellsPerEdge && a.skirtMeters == b.skirtMeters;
 }
 
 }  // namespace terrane::test

@@ -1,6 +1,6 @@
 #pragma once
-// A tile for tests of the wire formats: fractal ground on a body of the Moon's radius, on the lattice, with normals, colours and
-// skirts, as a builder would make it. The same for equal settings.
+// A tile for tests of the wire formats: fractal ground on a body of the Moon's radius, on the lattice, with normals,
+// colours and skirts, as a builder would make it. The same for equal settings.
 
 #include <cstdint>
 
@@ -20,8 +20,8 @@ struct SampleSettings {
 
 Tile sampleTile(const SampleSettings& settings = {});
 
-/// Equal as a set of vertices and triangles, told apart by their grid index: an encoder may order both anew. Normals within
-/// normalTolerance (length of the difference).
+/// Equal as a set of vertices and triangles, told apart by their grid index: an encoder may order both anew. Normals
+/// within normalTolerance (length of the difference).
 bool sameMesh(const TileMesh& expected, const TileMesh& actual, double normalTolerance);
 bool sameMetadata(const TileMetadata& expected, const TileMetadata& actual);
 

@@ -74,7 +74,8 @@ TEST(SceneJson, KeepsEveryBitOfADouble) {
     SelectionBody& body = wrote.bodies[0].selection;
     body.radiusMeters = std::exp2(exponent(random));
     body.heights = {-body.radiusMeters / 3, body.radiusMeters / 7};
-    body.geometricErrorMeters = {body.radiusMeters / 11, body.radiusMeters / 23, 1e-3 / 3, std::bit_cast<double>(random() >> 12)};
+    body.geometricErrorMeters = {body.radiusMeters / 11, body.radiusMeters / 23, 1e-3 / 3,
+                                 std::bit_cast<double>(random() >> 12)};
     const auto read = readSceneJson(writeSceneJson(wrote));
     ASSERT_TRUE(read.has_value()) << "seed " << kSeed << ": " << read.error().text();
     EXPECT_EQ(read->bodies[0].selection.radiusMeters, body.radiusMeters);
@@ -160,7 +161,8 @@ TEST(SceneJson, BombsAreRefusedBeforeTheyAreParsed) {
   std::string nested;
   for (int i = 0; i < 20000; ++i) nested += "{\"a\":";
   EXPECT_EQ(kindOf(nested), ErrorKind::TooLarge);
-  for (const std::string text : {"", "null", "1", "\"", "{", "[]", "{\"name\":1e999}", "{\"name\":\"\xff\"}", "nan", "{\"a\":}"}) {
+  for (const std::string text :
+       {"", "null", "1", "\"", "{", "[]", "{\"name\":1e999}", "{\"name\":\"\xff\"}", "nan", "{\"a\":}"}) {
     EXPECT_EQ(kindOf(text), ErrorKind::Malformed) << text;
   }
 }

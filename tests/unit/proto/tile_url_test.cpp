@@ -28,10 +28,12 @@ TEST(TileUrl, EveryTileAddressReadsBackAsItself) {
   for (int i = 0; i < 20000; ++i) {
     TileAddress address;
     for (std::uint64_t n = 8 + below(57); n > 0; --n) address.revision += "0123456789abcdef"[below(16)];
-    for (std::uint64_t n = 1 + below(32); n > 0; --n) address.body += "abcdefghijklmnopqrstuvwxyz0123456789-"[below(37)];
+    for (std::uint64_t n = 1 + below(32); n > 0; --n)
+      address.body += "abcdefghijklmnopqrstuvwxyz0123456789-"[below(37)];
     const Scheme scheme = below(2) == 0 ? Scheme::Cube : Scheme::Ico;
     address.path = FacePath::wholeFace(scheme, static_cast<int>(below(static_cast<std::uint64_t>(faceCount(scheme)))));
-    for (std::uint64_t n = below(FacePath::kMaxLevel + 1); n > 0; --n) address.path = address.path.child(static_cast<int>(below(4)));
+    for (std::uint64_t n = below(FacePath::kMaxLevel + 1); n > 0; --n)
+      address.path = address.path.child(static_cast<int>(below(4)));
 
     const std::string target = tileTarget(address);
     const auto route = parseTarget(target);
@@ -74,13 +76,24 @@ TEST(TileUrl, EscapesOfUnreservedCharactersAreThoseCharacters) {
 
 TEST(TileUrl, RefusalsNameThePartThatWasWrong) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {tile("cube/6.glb"), "face"},       {tile("cube/06.glb"), "face"},      {tile("cube/+1.glb"), "face"},
-      {tile("cube/-1.glb"), "face"},      {tile("cube/.glb"), "face"},        {tile("cube/2x/0.glb"), "face"},
-      {tile("ico/20.glb"), "face"},       {tile("cube/00/1.glb"), "face"},    {tile("cube/0x1/1.glb"), "face"},
+      {tile("cube/6.glb"), "face"},
+      {tile("cube/06.glb"), "face"},
+      {tile("cube/+1.glb"), "face"},
+      {tile("cube/-1.glb"), "face"},
+      {tile("cube/.glb"), "face"},
+      {tile("cube/2x/0.glb"), "face"},
+      {tile("ico/20.glb"), "face"},
+      {tile("cube/00/1.glb"), "face"},
+      {tile("cube/0x1/1.glb"), "face"},
       {tile("cube/4294967296.glb"), "face"},
-      {tile("cube/2/4.glb"), "digits"},   {tile("cube/2/01a.glb"), "digits"}, {tile("cube/2/.glb"), "digits"},
-      {tile("cube/2/+.glb"), "digits"},   {tile("cube/2/" + std::string(31, '0') + ".glb"), "digits"},
-      {tile("cube/2/0.1.glb"), "digits"}, {tile("sphere/2/0.glb"), "scheme"}, {tile("Cube/2/0.glb"), "scheme"},
+      {tile("cube/2/4.glb"), "digits"},
+      {tile("cube/2/01a.glb"), "digits"},
+      {tile("cube/2/.glb"), "digits"},
+      {tile("cube/2/+.glb"), "digits"},
+      {tile("cube/2/" + std::string(31, '0') + ".glb"), "digits"},
+      {tile("cube/2/0.1.glb"), "digits"},
+      {tile("sphere/2/0.glb"), "scheme"},
+      {tile("Cube/2/0.glb"), "scheme"},
       {"/v1/" + kRevision + "/Moon/cube/2.glb", "body"},
       {"/v1/" + kRevision + "/" + std::string(33, 'a') + "/cube/2.glb", "body"},
       {"/v1/" + kRevision + "/mo_on/cube/2.glb", "body"},
@@ -96,11 +109,29 @@ TEST(TileUrl, RefusalsNameThePartThatWasWrong) {
 }
 
 TEST(TileUrl, HostileTargetsAreRefusedAsTargets) {
-  std::vector<std::string> targets{"", "*", "v1/scene.json", "/../etc/passwd", "/v1/../scene.json", "/v1/./scene.json",
-                                   "/%2e%2e/%2e%2e/etc/passwd", "/%00", "/v1/scene.json%00", "/v1/scene.json%0d%0aX:1", "/%",
-                                   "/%2", "/%zz", "/%2fv1/scene.json", "/v1/scene.json#top", "/v1\\scene.json", "/v1/%7Fscene.json",
-                                   "/ v1/scene.json", "/v1/scene.json?a b", tile("cube/ 1.glb"), tile("cube/%201.glb"),
-                                   tile("cube/2/0\t1.glb"), tile("cube/2/..glb/..")};
+  std::vector<std::string> targets{"",
+                                   "*",
+                                   "v1/scene.json",
+                                   "/../etc/passwd",
+                                   "/v1/../scene.json",
+                                   "/v1/./scene.json",
+                                   "/%2e%2e/%2e%2e/etc/passwd",
+                                   "/%00",
+                                   "/v1/scene.json%00",
+                                   "/v1/scene.json%0d%0aX:1",
+                                   "/%",
+                                   "/%2",
+                                   "/%zz",
+                                   "/%2fv1/scene.json",
+                                   "/v1/scene.json#top",
+                                   "/v1\\scene.json",
+                                   "/v1/%7Fscene.json",
+                                   "/ v1/scene.json",
+                                   "/v1/scene.json?a b",
+                                   tile("cube/ 1.glb"),
+                                   tile("cube/%201.glb"),
+                                   tile("cube/2/0\t1.glb"),
+                                   tile("cube/2/..glb/..")};
   for (int c = 0; c < 256; ++c) {
     if (c > ' ' && c <= '~') continue;
     targets.push_back("/v1/scene.json" + std::string(1, static_cast<char>(c)));
@@ -121,8 +152,8 @@ TEST(TileUrl, OverlongTargetsAreTooLarge) {
 }
 
 TEST(TileUrl, OtherPathsAreNotFound) {
-  for (const std::string target :
-       {"/v1", "/v1/", "/v2/scene.json", "/healthz/", "/v1/scene.json/", "/v1/scene", "/a/b/c/d/e/f/g/h", "/v1/x.glb"}) {
+  for (const std::string target : {"/v1", "/v1/", "/v2/scene.json", "/healthz/", "/v1/scene.json/", "/v1/scene",
+                                   "/a/b/c/d/e/f/g/h", "/v1/x.glb"}) {
     EXPECT_EQ(refusal(target), ErrorKind::NotFound) << target;
   }
   EXPECT_EQ(refusal(tile("cube/2/0312.png")), ErrorKind::NotFound);

@@ -221,7 +221,9 @@ TEST(SceneFile, CutAndChangedFilesGiveAnAnswer) {
   std::size_t valid = 0;
   for (std::size_t length = 0; length < kScene.size(); ++length) {
     const Result<Scene> scene = parseScene(kScene.substr(0, length), "t.toml");
-    if (!scene) EXPECT_FALSE(scene.error().message.empty());
+    if (!scene) {
+      EXPECT_FALSE(scene.error().message.empty());
+    }
   }
   for (std::size_t i = 0; i < kScene.size(); ++i) {
     for (const char c : {'\0', '"', '[', '.', '=', '\n', '\xff', '9'}) {

@@ -24,7 +24,7 @@ SceneInfo twoBodies() {
     body.schemes = {Scheme::Cube};
     body.selection.radiusMeters = 1737400;
     body.selection.maxLevel = 12;
-    body.selection.geometricErrorMeters.assign(13, 1.0);
+    for (int level = 0; level <= 12; ++level) body.selection.geometricErrorMeters.push_back(4096.0 / (1 << level));
     scene.bodies.push_back(body);
   }
   return scene;

@@ -1,0 +1,120 @@
+#include "client/tiles/tile_residency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "common/tiling/cube_sphere.h"
+
+namespace terrane {
+
+void TileResidency::add(const std::shared_ptr<const Tile>& tile, const std::string& revision, std::size_t gpuBytes,
+                        const LastWanted& wanted) {
+  const FacePath& path = tile->metadata.path;
+  const auto [at, isNew] = tiles_.try_emplace(path);
+  if (isNew) {
+    ++countAtLevel_[static_cast<std::size_t>(path.level())];
+    for (int level = 0; level < path.level(); ++level) ++descendants_[path.ancestor(level)];
+  }
+  Resident& resident = at->second;
+  bytes_ -= resident.bytes;
+  resident.info = ResidentTile{tile->metadata.subtreeHeights};
+  resident.revision = revision;
+  resident.ground = GroundMesh::fromTile(*tile);
+  resident.mesh = tile;
+  resident.bytes = gpuBytes + resident.ground.bytes();
+  resident.wanted = wanted;
+  bytes_ += resident.bytes;
+}
+
+const std::string* TileResidency::touch(const FacePath& path, const LastWanted& wanted) {
+  const auto found = tiles_.find(path);
+  if (found == tiles_.end()) return nullptr;
+  found->second.wanted = wanted;
+  return &found->second.revision;
+}
+
+const ResidentTile* TileResidency::find(const FacePath& path) const {
+  const auto found = tiles_.find(path);
+  return found == tiles_.end() ? nullptr : &found->second.info;
+}
+
+std::shared_ptr<const Tile> TileResidency::mesh(const FacePath& path) const {
+  const auto found = tiles_.find(path);
+  return found == tiles_.end() ? nullptr : found->second.mesh.lock();
+}
+
+void TileResidency::remove(const FacePath& path) {
+  const auto found = tiles_.find(path);
+  bytes_ -= found->second.bytes;
+  --countAtLevel_[static_cast<std::size_t>(path.level())];
+  for (int level = 0; level < path.level(); ++level) {
+    const auto above = descendants_.find(path.ancestor(level));
+    if (--above->second == 0) descendants_.erase(above);
+  }
+  tiles_.erase(found);
+}
+
+std::vector<FacePath> TileResidency::evict(std::size_t budgetBytes, const std::vector<FacePath>& draw,
+                                           const std::function<bool(const LastWanted&)>& protects) {
+  std::vector<FacePath> gone;
+  if (bytes_ <= budgetBytes) return gone;
+  ++drawMark_;
+  for (const FacePath& path : draw) {
+    if (const auto found = tiles_.find(path); found != tiles_.end()) found->second.drawnMark = drawMark_;
+  }
+  using Candidate = std::tuple<std::uint64_t, int, FacePath>;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates;
+  const auto consider = [&](const FacePath& path, const Resident& resident) {
+    if (resident.drawnMark == drawMark_ || descendants_.contains(path) || protects(resident.wanted)) return;
+    candidates.emplace(resident.wanted.call, -path.level(), path);
+  };
+  for (const auto& [path, resident] : tiles_) consider(path, resident);
+  while (bytes_ > budgetBytes && !candidates.empty()) {
+    const FacePath path = std::get<FacePath>(candidates.top());
+    candidates.pop();
+    remove(path);
+    gone.push_back(path);
+    // The nearest resident ancestor may now be without descendants.
+    for (int level = path.level() - 1; level >= 0; --level) {
+      const auto above = tiles_.find(path.ancestor(level));
+      if (above == tiles_.end()) continue;
+      consider(above->first, above->second);
+      break;
+    }
+  }
+  return gone;
+}
+
+void TileResidency::clear() {
+  tiles_.clear();
+  descendants_.clear();
+  std::fill(countAtLevel_.begin(), countAtLevel_.end(), 0);
+  bytes_ = 0;
+}
+
+std::optional<TileResidency::Ground> TileResidency::groundBelow(const glm::dvec3& directionBody,
+                                                                double radiusMeters) const {
+  const double length = glm::length(directionBody);
+  if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
+  const glm::dvec3 direction = directionBody / length;
+  const FaceCoordinates on = cubeFaceCoordinates(direction);
+  for (int level = FacePath::kMaxLevel; level >= 0; --level) {
+    if (countAtLevel_[static_cast<std::size_t>(level)] == 0) continue;
+    const double tiles = static_cast<double>(std::uint64_t{1} << level);
+    const double x = std::clamp(0.5 * (on.s + 1.0), 0.0, 1.0) * tiles,
+                 y = std::clamp(0.5 * (on.t + 1.0), 0.0, 1.0) * tiles;
+    const double column = std::min(std::floor(x), tiles - 1), row = std::min(std::floor(y), tiles - 1);
+    const auto found = tiles_.find(
+        FacePath::cubeTile(on.face, level, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row)));
+    if (found == tiles_.end()) continue;
+    const auto height = found->second.ground.heightMeters(direction, x - column, y - row, radiusMeters);
+    if (height) return Ground{*height, level};
+  }
+  return std::nullopt;
+}
+
+}  // namespace terrane

@@ -1,0 +1,124 @@
+#include "server/build/skirt.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/numerics/strict_math.h"
+#include "common/tiling/cube_sphere.h"
+
+namespace terrane {
+namespace {
+
+double dot(const glm::dvec3& p, const glm::dvec3& q) noexcept { return (p.x * q.x + p.y * q.y) + p.z * q.z; }
+glm::dvec3 cross(const glm::dvec3& p, const glm::dvec3& q) noexcept {
+  return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
+}
+
+/// Where the line from a to b passes under direction d, all in one plane with the centre: its distance from there.
+double chordRadius(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& d) noexcept {
+  const glm::dvec3 along = b - a, normal = cross(a, b);
+  // (a + t along) x d = 0, measured along the plane's normal.
+  const double t = -dot(cross(a, d), normal) / dot(cross(along, d), normal);
+  return dot(a + along * t, d);
+}
+
+class SkirtBuilder {
+ public:
+  SkirtBuilder(const SkirtInput& tile, SkirtScratch& scratch, std::vector<double>& lowest)
+      : tile_(tile), scratch_(scratch), lowest_(lowest), cells_(static_cast<std::size_t>(tile.topology.cellsPerEdge)) {}
+
+  void run() {
+    lowest_.clear();
+    for (const std::uint32_t anchor : tile_.topology.skirtAnchors) lowest_.push_back(tile_.heightMeters[anchor]);
+    if (tile_.path.level() > 0) lowerToCoarserEdges();
+    if (static_cast<std::size_t>(tile_.path.level()) + 1 < tile_.levels.size()) lowerToFinerEdges();
+    const double margin = skirtMarginMeters(tile_.radiusMeters, tile_.path.level());
+    for (double& height : lowest_) height -= margin;
+  }
+
+ private:
+  static constexpr std::size_t kEdges = 4;
+
+  double& lowest(std::size_t edge, std::size_t k) { return lowest_[edge * (cells_ + 1) + k]; }
+
+  glm::dvec3 anchorDirection(std::size_t edge, std::size_t k) const {
+    const std::uint32_t anchor = tile_.topology.skirtAnchors[edge * (cells_ + 1) + k];
+    return {tile_.directions.x[anchor], tile_.directions.y[anchor], tile_.directions.z[anchor]};
+  }
+
+  void evaluate(std::size_t samplesPerEdge, int level) {
+    const GridDirections& d = scratch_.directions;
+    tile_.field.evaluate({d.x.data(), d.y.data(), d.z.data(), kEdges, samplesPerEdge},
+                         tile_.levels[static_cast<std::size_t>(level)].minWavelengthMeters, scratch_.samples);
+  }
+
+  void startDirections() {
+    scratch_.directions.x.clear();
+    scratch_.directions.y.clear();
+    scratch_.directions.z.clear();
+  }
+  void addDirection(const glm::dvec3& direction) {
+    scratch_.directions.x.push_back(direction.x);
+    scratch_.directions.y.push_back(direction.y);
+    scratch_.directions.z.push_back(direction.z);
+  }
+
+  /// A coarser neighbour has every other vertex of this edge, and straight lines between.
+  void lowerToCoarserEdges() {
+    startDirections();
+    for (std::size_t edge = 0; edge < kEdges; ++edge)
+      for (std::size_t k = 0; k <= cells_; k += 2) addDirection(anchorDirection(edge, k));
+    const std::size_t perEdge = cells_ / 2 + 1;
+    evaluate(perEdge, tile_.path.level() - 1);
+    for (std::size_t edge = 0; edge < kEdges; ++edge) {
+      const double* coarse = scratch_.samples.heightMeters.data() + edge * perEdge;
+      for (std::size_t k = 0; k <= cells_; k += 2) lower(edge, k, coarse[k / 2]);
+      for (std::size_t k = 1; k < cells_; k += 2) {
+        const glm::dvec3 a = anchorDirection(edge, k - 1) * (tile_.radiusMeters + coarse[k / 2]);
+        const glm::dvec3 b = anchorDirection(edge, k + 1) * (tile_.radiusMeters + coarse[k / 2 + 1]);
+        lower(edge, k, chordRadius(a, b, anchorDirection(edge, k)) - tile_.radiusMeters);
+      }
+    }
+  }
+
+  /// A finer neighbour has a vertex at each of this edge's, and one between each two: both ends go below that one.
+  void lowerToFinerEdges() {
+    startDirections();
+    for (std::size_t edge = 0; edge < kEdges; ++edge)
+      for (std::size_t q = 0; q <= 2 * cells_; ++q) addDirection(finerDirection(edge, q));
+    const std::size_t perEdge = 2 * cells_ + 1;
+    evaluate(perEdge, tile_.path.level() + 1);
+    for (std::size_t edge = 0; edge < kEdges; ++edge) {
+      const double* fine = scratch_.samples.heightMeters.data() + edge * perEdge;
+      for (std::size_t q = 0; q < perEdge; ++q) {
+        lower(edge, q / 2, fine[q]);
+        lower(edge, (q + 1) / 2, fine[q]);
+      }
+    }
+  }
+
+  /// Position q of 0 .. 2 cells along an edge, walked as the topology walks it.
+  glm::dvec3 finerDirection(std::size_t edge, std::size_t q) const {
+    const std::size_t last = 2 * cells_;
+    const std::size_t u = edge == 0 ? q : edge == 1 ? last : edge == 2 ? last - q : 0;
+    const std::size_t v = edge == 0 ? 0 : edge == 1 ? q : edge == 2 ? last : last - q;
+    int gridLevel = tile_.path.level() + 1;
+    for (std::size_t cells = 1; cells < cells_; cells *= 2) ++gridLevel;
+    return cubeGridDirection(tile_.path.face(), gridLevel, tile_.path.column() * last + u, tile_.path.row() * last + v);
+  }
+
+  void lower(std::size_t edge, std::size_t k, double height) { lowest(edge, k) = std::min(lowest(edge, k), height); }
+
+  const SkirtInput& tile_;
+  SkirtScratch& scratch_;
+  std::vector<double>& lowest_;
+  std::size_t cells_;
+};
+
+}  // namespace
+
+void skirtHeights(const SkirtInput& tile, SkirtScratch& scratch, std::vector<double>& out) {
+  SkirtBuilder(tile, scratch, out).run();
+}
+
+}  // namespace terrane

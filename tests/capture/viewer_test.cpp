@@ -1,0 +1,133 @@
+// terrane-server and terrane-view as a user runs them: settle, capture, count, fly, record.
+
+#include <gtest/gtest.h>
+
+#include "client/flight/flight_file.h"
+#include "client/gl/image.h"
+#include "tests/support/view_processes.h"
+
+namespace terrane {
+namespace {
+
+using namespace testing_support;
+
+class Viewer : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { server_ = std::make_unique<RunningServer>("moon"); }
+  static void TearDownTestSuite() { server_.reset(); }
+  void SetUp() override { ASSERT_FALSE(server_->url.empty()) << server_->process->errors(); }
+
+  ViewOutcome view(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"--server", server_->url, "--headless", "--size", "320x180"});
+    return runView(arguments);
+  }
+
+  static inline std::unique_ptr<RunningServer> server_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(Viewer, SettlesAtACameraCapturesItAndWritesEveryFigure) {
+  const auto outcome = view({"--camera", "-10,8,3000000", "--settle", "--capture", folder_.file("a.png"), "--stats", folder_.file("a.json")});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+  const auto image = readPng(folder_.file("a.png"));
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->width, 320);
+  EXPECT_EQ(image->height, 180);
+  const std::string json = readFile(folder_.file("a.json"));
+  for (const char* key : {"framesDrawn", "frameMs", "p50", "p99", "max", "msToSettle", "tilesDrawn", "tilesResident", "requests", "bytesReceived",
+                          "decodeMs", "uncoveredPixels", "skirtPixels", "rssBytes", "gpuBytes", "placement", "selfTest", "errorPixels",
+                          "camera", "effects", "constructed", "renderer", "points"})
+    EXPECT_NE(json.find(std::string(1, '"').append(key).append("\": ")), std::string::npos) << key;
+  EXPECT_EQ(jsonNumber(json, "framesDrawn"), 8);
+  EXPECT_EQ(jsonNumber(json, "framesCounted"), 8);
+  EXPECT_EQ(jsonNumber(json, "uncoveredPixels"), 0);
+  EXPECT_GT(jsonNumber(json, "tilesDrawn"), 0);
+  EXPECT_GT(jsonNumber(json, "msToSettle"), 0);
+  EXPECT_GE(jsonNumber(json, "bytesReceived"), 1000 * jsonNumber(json, "tilesDrawn"));
+}
+
+TEST_F(Viewer, ThePictureOfTheWholeBodyHasABrightDiscAndBlackCorners) {
+  const auto outcome = view({"--capture", folder_.file("whole.png")});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const auto image = readPng(folder_.file("whole.png"));
+  ASSERT_TRUE(image);
+  const auto brightness = [&](int x, int y) {
+    const std::size_t at = 3 * (static_cast<std::size_t>(y) * 320 + static_cast<std::size_t>(x));
+    return image->rgb[at] + image->rgb[at + 1] + image->rgb[at + 2];
+  };
+  EXPECT_LT(brightness(2, 2), 30);
+  EXPECT_LT(brightness(317, 177), 30);
+  EXPECT_GT(brightness(200, 90), 90);
+}
+
+TEST_F(Viewer, TheSameCameraGivesTheSamePictureTwice) {
+  const std::vector<std::string> camera{"--camera", "-10,8,400,30,-30", "--above-ground", "--settle", "--capture"};
+  auto first = camera, second = camera;
+  first.push_back(folder_.file("1.png"));
+  second.push_back(folder_.file("2.png"));
+  ASSERT_EQ(view(first).status, 0);
+  ASSERT_EQ(view(second).status, 0);
+  const auto a = readPng(folder_.file("1.png")), b = readPng(folder_.file("2.png"));
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->rgb, b->rgb);
+}
+
+TEST_F(Viewer, AboveGroundStandsThatHighOverTheFinestGround) {
+  const auto outcome = view({"--camera", "-10,8,2,0,0", "--above-ground", "--error", "8", "--stats", folder_.file("s.json")});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NEAR(jsonNumber(readFile(folder_.file("s.json")), "heightAboveGroundMeters"), 2, 1e-6);
+}
+
+TEST_F(Viewer, AFlightIsCapturedAndMeasuredAtEachOfItsPoints) {
+  std::ofstream(folder_.file("f.txt")) << "# terrane flight 1\nabove-ground\n0 -10 8 2000000 0 -90\n1 -10 8 20000 0 -60\n2 -10 8 50 0 -20\n";
+  const auto outcome = view({"--flight", folder_.file("f.txt"), "--step", "0.5", "--settle", "--error", "4", "--capture",
+                             folder_.file("p-%d.png"), "--stats", folder_.file("f.json"), "--record", folder_.file("r.txt")});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(lineCount(outcome.output), 3u) << outcome.output;
+  for (const char* name : {"p-1.png", "p-2.png", "p-3.png"}) EXPECT_TRUE(readPng(folder_.file(name))) << name;
+  const std::string json = readFile(folder_.file("f.json"));
+  EXPECT_EQ(jsonNumber(json, "framesDrawn"), 5);  // three points and one between each two
+  EXPECT_EQ(jsonNumber(json, "uncoveredPixels"), 0);
+  EXPECT_NE(json.find("\"name\": \"2000 km\""), std::string::npos);
+  EXPECT_NE(json.find("\"name\": \"50 m\""), std::string::npos);
+  const auto recorded = loadFlight(folder_.file("r.txt"));
+  ASSERT_TRUE(recorded) << recorded.error().text();
+  EXPECT_EQ(recorded->points.size(), 5u);
+}
+
+TEST_F(Viewer, ExplainNamesTheSceneOfEveryEffectAndWhatItCosts) {
+  const auto outcome = view({"--explain"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("effect sun: on"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("ms a frame"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("constructed: effect.sun 1"), std::string::npos) << outcome.output;
+}
+
+TEST(ViewerOfABareSphere, ConstructsNoEffect) {
+  const RunningServer server("smooth");
+  ASSERT_FALSE(server.url.empty()) << server.process->errors();
+  const auto outcome = runView({"--server", server.url, "--explain", "--size", "160x90"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("effect sun: off"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.output.find("effect.sun"), std::string::npos) << outcome.output;
+}
+
+TEST_F(Viewer, AFrameBudgetRaisesTheErrorThatAFrameIsDrawnWith) {
+  // No machine draws a frame in a hundredth of a millisecond: the controller has to go to its limit.
+  const auto outcome = view({"--camera", "-10,8,3000000", "--frame-budget", "0.01", "--settle", "--frames", "60", "--error", "2", "--stats",
+                             folder_.file("b.json")});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(jsonNumber(readFile(folder_.file("b.json")), "errorPixels"), 32);
+}
+
+TEST_F(Viewer, AnUnknownBodyIsNamedWithThoseThatThereAre) {
+  const auto outcome = view({"--body", "mars"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(lineCount(outcome.errors), 1u) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("--body"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("moon"), std::string::npos) << outcome.errors;
+}
+
+}  // namespace
+}  // namespace terrane

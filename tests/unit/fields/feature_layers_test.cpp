@@ -1,0 +1,141 @@
+// Craters and rocks on their hashed grids: the geometry that the bounds stand on, and that nothing is lost or double.
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "server/fields/feature_layers.h"
+#include "server/fields/lunar_bounds.h"
+#include "tests/unit/fields/field_samples.h"
+
+namespace terrane::lunar {
+namespace {
+
+using terrane::test::kMoonRadius;
+using terrane::test::randomDirection;
+
+std::vector<FeatureLayer> crowdedLayers() { return makeLayers({kMoonRadius, 1.0, 4.0, 0.001, 1969}); }
+
+glm::dvec3 centerOf(const Feature& f) { return {f.center[0], f.center[1], f.center[2]}; }
+
+void gather(const FeatureLayer& layer, const glm::dvec3& at, double radius, std::vector<Feature>& out) {
+  out.clear();
+  const double center[3] = {at.x, at.y, at.z};
+  gatherFeatures(layer, kMoonRadius, center, radius, out);
+}
+
+/// A feature's bowl or body, with its outline's widest lobe.
+double bowlRadius(const FeatureLayer& layer, const Feature& f) {
+  return f.radius / (1 - (layer.stage == FeatureStage::Rock ? kRockLobes : kCraterLobes));
+}
+
+TEST(FeatureLayers, NoTwoBowlsOfALayerOverlapAndAtMostFourFeaturesTouchAPoint) {
+  std::mt19937_64 random(3);
+  std::vector<Feature> features;
+  std::size_t most = 0;
+  for (const FeatureLayer& layer : crowdedLayers()) {
+    for (int i = 0; i < 60; ++i) {
+      glm::dvec3 d = randomDirection(random);
+      // Corners and edges of the cube are the hard places: cells are narrowest there.
+      if (i % 3 == 0) d = glm::normalize(glm::sign(d) + 2e-2 * layer.largestDiameter() / kMoonRadius * randomDirection(random));
+      if (i % 3 == 1) d = glm::normalize(glm::dvec3(1, 1, 0.02 * d.z));
+      gather(layer, d * kMoonRadius, layer.largestDiameter() * 2, features);
+      for (std::size_t a = 0; a < features.size(); ++a) {
+        for (std::size_t b = a + 1; b < features.size(); ++b) {
+          ASSERT_GE(glm::distance(centerOf(features[a]), centerOf(features[b])),
+                    (bowlRadius(layer, features[a]) + bowlRadius(layer, features[b])) * (1 - 1e-9));
+        }
+      }
+      for (int k = 0; k < 40; ++k) {
+        const glm::dvec3 p = glm::normalize(d * kMoonRadius + layer.largestDiameter() * randomDirection(random)) * kMoonRadius;
+        std::size_t touching = 0;
+        for (const Feature& f : features) touching += glm::distance(centerOf(f), p) < f.heightReach;
+        most = std::max(most, touching);
+        ASSERT_LE(touching, 4u);
+      }
+    }
+  }
+  std::printf("most features of a layer at one point: %zu\n", most);
+  EXPECT_GE(most, 3u);
+}
+
+TEST(FeatureLayers, GatheringFindsAllThatCellByCellSearchFinds) {
+  std::mt19937_64 random(5);
+  for (const FeatureLayer& layer : crowdedLayers()) {
+    if (layer.cellsPerFace > 60) continue;
+    std::vector<Feature> all, near;
+    for (int face = 0; face < 6; ++face) {
+      for (std::uint32_t row = 0; row < layer.cellsPerFace; ++row) {
+        for (std::uint32_t column = 0; column < layer.cellsPerFace; ++column) {
+          Feature f;
+          if (featureOfCell(layer, kMoonRadius, face, column, row, f)) all.push_back(f);
+        }
+      }
+    }
+    for (int i = 0; i < 30; ++i) {
+      const glm::dvec3 p = randomDirection(random) * kMoonRadius;
+      const double ball = i % 2 ? 1000.0 : 400000.0;
+      gather(layer, p, ball, near);
+      std::vector<glm::dvec3> expected;
+      for (const Feature& f : all) {
+        if (glm::distance(centerOf(f), p) <= ball + f.reach) expected.push_back(centerOf(f));
+      }
+      ASSERT_EQ(near.size(), expected.size()) << "exponent " << layer.exponent;
+      for (std::size_t k = 0; k < near.size(); ++k) ASSERT_EQ(centerOf(near[k]), expected[k]);
+    }
+  }
+}
+
+TEST(FeatureLayers, SmallLayersAreGatheredTheSameFromEveryBall) {
+  std::mt19937_64 random(9);
+  std::vector<Feature> wide, narrow;
+  for (const FeatureLayer& layer : crowdedLayers()) {
+    for (int i = 0; i < 20; ++i) {
+      glm::dvec3 d = randomDirection(random);
+      if (i % 2) d = glm::normalize(glm::dvec3(d.x > 0 ? 1 : -1, 1, i % 4 == 1 ? 1 : d.z));
+      const double size = layer.largestDiameter();
+      gather(layer, d * kMoonRadius, 6 * size, wide);
+      const glm::dvec3 inside = glm::normalize(d * kMoonRadius + 3 * size * randomDirection(random)) * kMoonRadius;
+      gather(layer, inside, size, narrow);
+      std::size_t expected = 0;
+      for (const Feature& f : wide) expected += glm::distance(centerOf(f), inside) <= size + f.reach;
+      ASSERT_EQ(narrow.size(), expected) << "exponent " << layer.exponent;
+    }
+  }
+}
+
+TEST(FeatureLayers, FreshCratersHaveThePublishedDepths) {
+  // Stopar et al. 2017 and Pike 1977; between the published sizes the table is linear.
+  EXPECT_NEAR(freshCrater(50).depth / 50, 0.12, 0.012);
+  EXPECT_NEAR(freshCrater(150).depth / 150, 0.15, 0.015);
+  EXPECT_NEAR(freshCrater(400).depth / 400, 0.19, 0.015);
+  EXPECT_NEAR(freshCrater(4000).depth / 4000, 0.20, 0.01);
+  for (const double diameter : {30.0, 90.0, 200.0}) {
+    EXPECT_NEAR(freshCrater(diameter * 1000).depth, 1044 * std::pow(diameter, 0.301), 0.04 * 1044 * std::pow(diameter, 0.301));
+    EXPECT_NEAR(freshCrater(diameter * 1000).rim, 236 * std::pow(diameter, 0.399), 0.05 * 236 * std::pow(diameter, 0.399));
+  }
+}
+
+TEST(FeatureLayers, SizesFollowTheInverseSquareLaw) {
+  const auto layers = makeLayers({kMoonRadius, 1.0, 1.0, 0.001, 5});
+  std::map<int, std::pair<int, int>> counts;  // exponent: all, larger than 1.5 D0
+  for (const FeatureLayer& layer : layers) {
+    if (layer.stage != FeatureStage::YoungCrater || layer.exponent > 6) continue;
+    auto& [all, large] = counts[layer.exponent];
+    for (std::uint32_t row = 1000; row < 1060; ++row) {
+      for (std::uint32_t column = 2000; column < 2060; ++column) {
+        Feature f;
+        if (!featureOfCell(layer, kMoonRadius, 1, column, row, f)) continue;
+        ++all;
+        large += 2 * f.radius > 1.5 * layer.smallestDiameter();
+      }
+    }
+  }
+  // N(> 1.5) / N(> 1) within [1, 2): (1.5^-2 - 2^-2) / (1 - 2^-2) = 0.2593.
+  for (const auto& [exponent, count] : counts) {
+    EXPECT_NEAR(static_cast<double>(count.second) / count.first, 0.2593, 0.03) << exponent;
+  }
+}
+
+}  // namespace
+}  // namespace terrane::lunar
