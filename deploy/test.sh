@@ -52,11 +52,9 @@ if $full; then
   step "clang-tidy"
   git ls-files 'common/*.cpp' 'proto/*.cpp' 'server/*.cpp' 'client/*.cpp' | xargs -P 2 -n 4 clang-tidy -p build/release --quiet
   step "fuzzing"
-  build fuzz
-  for target in build/fuzz/bin/fuzz_*; do
-    mkdir -p "build/fuzz/corpus/$(basename "$target")"
-    "$target" -max_total_time=120 -rss_limit_mb=1024 -timeout=10 -print_final_stats=1 "build/fuzz/corpus/$(basename "$target")"
-  done
+  cmake --preset fuzz -DTERRANE_FUZZ_SECONDS=100 >/dev/null
+  cmake --build --preset fuzz
+  ctest --test-dir build/fuzz -L fuzz --output-on-failure
   export TERRANE_CAMERAS=200
 fi
 

@@ -15,7 +15,8 @@
 
 namespace terrane {
 
-/// Wraps an encoded mesh. offsetsMin/Max: of the mesh's offsets, for the accessor.
+/// Wraps a mesh (for the accessor's bounds) and its encoding. Errors: InvalidArgument (a number of the metadata that is
+/// not finite, except horizonPoint's, which is written as null; another mesh's encoding).
 Result<std::vector<std::uint8_t>> writeTileGlb(const TileMetadata& metadata, const TileMesh& mesh,
                                                const DracoBuffer& draco);
 

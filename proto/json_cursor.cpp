@@ -124,6 +124,10 @@ std::string JsonCursor::text(std::size_t maxBytes) const {
 }
 
 struct JsonDocument::State {
+  explicit State(nlohmann::json parsed) : json(std::move(parsed)) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
   nlohmann::json json;
   std::optional<Error> error;
 };
@@ -138,10 +142,9 @@ Result<JsonDocument> JsonDocument::parse(std::string_view text, const Limits& li
     return makeError(ErrorKind::TooLarge, std::string(field), "more bytes than the limit");
   if (nestingDepth(text) > limits.maxDepth)
     return makeError(ErrorKind::TooLarge, std::string(field), "nested too deep");
-  auto state = std::make_unique<State>();
-  state->json = nlohmann::json::parse(text, nullptr, false);
-  if (state->json.is_discarded()) return makeError(ErrorKind::Malformed, std::string(field), "not JSON");
-  return JsonDocument(std::move(state));
+  auto json = nlohmann::json::parse(text, nullptr, false);
+  if (json.is_discarded()) return makeError(ErrorKind::Malformed, std::string(field), "not JSON");
+  return JsonDocument(std::make_unique<State>(std::move(json)));
 }
 
 JsonCursor JsonDocument::root(std::string prefix) {

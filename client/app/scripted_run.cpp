@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
-#include <optional>
 
 #include "client/app/explain.h"
 #include "client/app/flight_plan.h"
@@ -46,6 +46,10 @@ class ScriptedRun {
   Done capture(const std::string& file);
   Done writeResults();
   Error notComplete(std::string_view what, double seconds) const;
+  /// A window manager may have given the window another size than was asked; headless nobody does.
+  std::array<int, 2> pictureSize() const {
+    return options_.headless ? std::array{options_.widthPixels, options_.heightPixels} : window_.framebufferSize();
+  }
   bool counting() const { return !options_.statsFile.empty(); }
 
   const ViewOptions& options_;
@@ -136,13 +140,14 @@ Done ScriptedRun::drawFrame(const ViewSession::View& view) {
     HudState state = hudStateOf(*session_, statistics_.frameTimes, drawn_, frameMs);
     state.askedErrorPixels = budget_.asked();
     state.firstViewComplete = firstFullView_;
-    hud_->draw(state, true, options_.widthPixels, options_.heightPixels);
+    hud_->draw(state, true, view.widthPixels, view.heightPixels);
   }
   return true;
 }
 
 Done ScriptedRun::capture(const std::string& file) {
-  const auto written = writePng(readFramebuffer(options_.widthPixels, options_.heightPixels), file);
+  const auto [width, height] = pictureSize();
+  const auto written = writePng(readFramebuffer(width, height), file);
   if (!written) return makeError(written.error().kind, "--capture", written.error().text());
   return true;
 }
@@ -176,7 +181,8 @@ Done ScriptedRun::flyPlan(const FlightPlan& plan) {
   const bool capturesPoints = options_.captureFile.find("%d") != std::string::npos;
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
     const PlannedFrame& frame = plan.frames[i];
-    const ViewSession::View view{frame.pose, plan.aboveGround, options_.widthPixels, options_.heightPixels};
+    const auto [width, height] = pictureSize();
+    const ViewSession::View view{frame.pose, plan.aboveGround, width, height};
     // A flight begins with a full view, so that what it shows does not depend on how fast the first tiles came.
     if (options_.settle || (i == 0 && plan.points > 0))
       if (const Done settled = settle(view, options_.settle); !settled) return settled.error();

@@ -19,7 +19,8 @@ constexpr std::array kLunarParameters{
 
 constexpr std::array<FieldRow, kFieldKindCount> kFields{{
     {FieldKind::Sphere, "sphere", "a bare sphere", {}},
-    {FieldKind::Lunar, "lunar", "maria, highlands, craters, regolith and rocks, from basins to grains", kLunarParameters},
+    {FieldKind::Lunar, "lunar", "maria, highlands, craters, regolith and rocks, from basins to grains",
+     kLunarParameters},
 }};
 
 }  // namespace

@@ -27,7 +27,8 @@ double octavePosition(double diameter) noexcept {
   return static_cast<double>(exponent - 1) + (2.0 * mantissa - 1.0);
 }
 
-// Depth over diameter at 16, 32, ... 16384 m, and from there on depth and rim height in metres at 16384, 32768, ... 524288 m.
+// Depth over diameter at 16, 32, ... 16384 m, and from there on depth and rim height in metres at 16384, 32768, ...
+// 524288 m.
 constexpr std::array<double, 11> kSimpleRatio{0.115, 0.12, 0.12, 0.14, 0.175, 0.198, 0.2, 0.2, 0.2, 0.19, 0.147};
 constexpr std::array<double, 6> kComplexDepth{2410, 2960, 3650, 4490, 5540, 6800};
 constexpr std::array<double, 6> kComplexRim{690, 945, 1245, 1640, 2170, 2800};
@@ -63,8 +64,10 @@ double wearOf(const FeatureLayer& layer, std::uint64_t h) noexcept {
 }
 
 void tangentFrame(const double n[3], std::uint64_t hash, double axis1[3], double axis2[3]) noexcept {
-  // A hashed vector, made orthogonal to n. It is never parallel to n in practice; the fallback keeps it finite all the same.
-  double v[3] = {2 * hashUnit(mixHash(hash ^ 1)) - 1, 2 * hashUnit(mixHash(hash ^ 2)) - 1, 2 * hashUnit(mixHash(hash ^ 3)) - 1};
+  // A hashed vector, made orthogonal to n. It is never parallel to n in practice; the fallback keeps it finite all the
+  // same.
+  double v[3] = {2 * hashUnit(mixHash(hash ^ 1)) - 1, 2 * hashUnit(mixHash(hash ^ 2)) - 1,
+                 2 * hashUnit(mixHash(hash ^ 3)) - 1};
   for (int attempt = 0; attempt < 2; ++attempt) {
     const double along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
     for (int i = 0; i < 3; ++i) axis1[i] = v[i] - along * n[i];
@@ -96,7 +99,8 @@ void randomLobes(Feature& f, std::uint64_t hash, double bound) noexcept {
 
 Feature makeRock(const double direction[3], double bodyRadius, double diameter, std::uint64_t hash) noexcept {
   Feature f{};
-  const double norm = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+  const double norm =
+      std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
   const double n[3] = {direction[0] / norm, direction[1] / norm, direction[2] / norm};
   for (int i = 0; i < 3; ++i) f.center[i] = n[i] * bodyRadius;
   tangentFrame(n, hash, f.axis1, f.axis2);
@@ -114,7 +118,8 @@ struct Range {
   std::uint32_t first = 1, last = 0;  ///< empty if first > last
 };
 
-/// Cells along one face axis that a ball may touch: the ball's box, projected from the body's centre. along, outward: the ball's centre.
+/// Cells along one face axis that a ball may touch: the ball's box, projected from the body's centre. along, outward:
+/// the ball's centre.
 Range cellRange(double along, double outward, double reach, std::uint32_t cells) noexcept {
   const double nearest = outward - reach, farthest = outward + reach;
   if (std::fabs(along) - reach > farthest) return {};  // beside or behind the face's pyramid |along| <= outward
@@ -129,7 +134,8 @@ Range cellRange(double along, double outward, double reach, std::uint32_t cells)
   const double first = std::floor((atanQuarterPi(std::clamp(low, -1.0, 1.0)) + 1) * scale - 1e-3);
   const double last = std::floor((atanQuarterPi(std::clamp(high, -1.0, 1.0)) + 1) * scale + 1e-3);
   const double top = static_cast<double>(cells - 1);
-  return {static_cast<std::uint32_t>(std::clamp(first, 0.0, top)), static_cast<std::uint32_t>(std::clamp(last, 0.0, top))};
+  return {static_cast<std::uint32_t>(std::clamp(first, 0.0, top)),
+          static_cast<std::uint32_t>(std::clamp(last, 0.0, top))};
 }
 
 }  // namespace
@@ -154,9 +160,11 @@ Morphometry freshCrater(double diameter) noexcept {
   return {depth, rim, 0.42 + 0.07 * std::min(size, 4.0), 0.28 * depth};
 }
 
-Feature makeCrater(const double direction[3], double bodyRadius, double diameter, double wear, std::uint64_t hash) noexcept {
+Feature makeCrater(const double direction[3], double bodyRadius, double diameter, double wear,
+                   std::uint64_t hash) noexcept {
   Feature f{};
-  const double norm = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+  const double norm =
+      std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
   const double n[3] = {direction[0] / norm, direction[1] / norm, direction[2] / norm};
   for (int i = 0; i < 3; ++i) f.center[i] = n[i] * bodyRadius;
   tangentFrame(n, hash, f.axis1, f.axis2);
@@ -185,7 +193,8 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
                    Feature& out) {
   const Cell cell{face, column, row};
   const std::uint64_t hash = cellHash(layer, cell);
-  const double share = layer.stage == FeatureStage::Rock ? std::min(1.0, layer.occupancy * patchiness(layer, cell)) : layer.occupancy;
+  const double share =
+      layer.stage == FeatureStage::Rock ? std::min(1.0, layer.occupancy * patchiness(layer, cell)) : layer.occupancy;
   if (hashUnit(hash) >= share) return false;
 
   // Cumulative N(> D) ~ D^-2 between D0 and 2 D0: D = D0 / sqrt(1 - 3/4 u).
@@ -193,8 +202,9 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
   const bool rock = layer.stage == FeatureStage::Rock;
   const double bowl = 0.5 * diameter / (1 - (rock ? kRockLobes : kCraterLobes));
 
-  // Margin to the cell's sides, in face angle: a point at angle a from the side's great circle, measured along the face's own grid, is
-  // at least R sin(a) g away from it, g = sqrt((1 + X^2) / (1 + X^2 + Y^2)), here taken at the worst place of the cell.
+  // Margin to the cell's sides, in face angle: a point at angle a from the side's great circle, measured along the
+  // face's own grid, is at least R sin(a) g away from it, g = sqrt((1 + X^2) / (1 + X^2 + Y^2)), here taken at the
+  // worst place of the cell.
   const double width = 2.0 / static_cast<double>(layer.cellsPerFace);
   const double s0 = width * static_cast<double>(column) - 1, t0 = width * static_cast<double>(row) - 1;
   const auto squares = [](double a, double b) {

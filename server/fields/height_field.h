@@ -1,7 +1,8 @@
 #pragma once
-// A height field over the sphere: heights, gradients and reflectance for many directions at once, limited to the wavelengths that a
-// tile level can show, with proven bounds on all that is left out. Deterministic: equal inputs give equal bits on every machine,
-// thread and SIMD path, whatever else is in the batch. Body frame, metres. const is thread-safe.
+// A height field over the sphere: heights, gradients and reflectance for many directions at once, limited to the
+// wavelengths that a tile level can show, with proven bounds on all that is left out. Deterministic: equal inputs give
+// equal bits on every machine, thread and SIMD path, whatever else is in the batch. Body frame, metres. const is
+// thread-safe.
 
 #include <cstddef>
 #include <memory>
@@ -22,7 +23,8 @@ bool simdPathSupported(SimdPath path) noexcept;
 /// "default", "v3", "v4"; errors name "--simd".
 Result<SimdPath> parseSimdPath(std::string_view text);
 
-/// Directions to sample, structure of arrays. Rows matter only for speed (a kernel may skip whole rows): count = rows * rowLength.
+/// Directions to sample, structure of arrays. Rows matter only for speed (a kernel may skip whole rows): count = rows *
+/// rowLength.
 struct SampleBatch {
   const double* x = nullptr;  ///< unit directions, body frame
   const double* y = nullptr;
@@ -34,7 +36,8 @@ struct SampleBatch {
 /// Results, resized by evaluate; kept by the caller between calls so that nothing is allocated in the steady state.
 struct SurfaceSamples {
   std::vector<double> heightMeters;
-  /// Gradient of the height along the surface (tangent to the sphere of radius R), body frame, dimensionless (metres per metre).
+  /// Gradient of the height along the surface (tangent to the sphere of radius R), body frame, dimensionless (metres
+  /// per metre).
   std::vector<float> gradientX, gradientY, gradientZ;
   std::vector<float> reflectance;  ///< linear normal albedo, 0..kColorScale; empty if the field has one colour
   struct Scratch;                  ///< kernels' own memory
@@ -50,7 +53,8 @@ class HeightField {
 
   /// Proven: |h(all wavelengths down to finestWavelengthMeters) - h(down to minWavelengthMeters)| <= this, everywhere.
   virtual double omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept = 0;
-  /// Proven: how far h(down to minWavelengthMeters) may be from the bilinear surface through samples spacingMeters apart.
+  /// Proven: how far h(down to minWavelengthMeters) may be from the bilinear surface through samples spacingMeters
+  /// apart.
   virtual double interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept = 0;
   /// Proven range of all heights.
   virtual HeightRange heightRange() const noexcept = 0;

@@ -8,12 +8,12 @@
 namespace terrane::lunar {
 namespace {
 
-/// The outline o = 1 + lobes, orders 2..5, amplitudes shared out as in feature_layers.cpp: what stretching by it does to slopes and
-/// curvatures of a function of r o(bearing).
+/// The outline o = 1 + lobes, orders 2..5, amplitudes shared out as in feature_layers.cpp: what stretching by it does
+/// to slopes and curvatures of a function of r o(bearing).
 struct OutlineBounds {
-  double gradient;        ///< |grad (r o)| <= this
-  double squareCurvature; ///< |Hessian (r o)^2| <= this
-  double radiusCurvature; ///< |Hessian (r o)| <= this / r
+  double gradient;         ///< |grad (r o)| <= this
+  double squareCurvature;  ///< |Hessian (r o)^2| <= this
+  double radiusCurvature;  ///< |Hessian (r o)| <= this / r
 };
 OutlineBounds outlineBounds(double lobes) noexcept {
   const double most = 1 + lobes, first = 3.25 * lobes, second = 11.85 * lobes;  // o, |o'|, |o''|
@@ -66,9 +66,10 @@ FeatureBounds craterBounds(const Feature& f) noexcept {
            3 * f.rim * a * a / width * outline.radiusCurvature / (std::max(x, 0.05) * squareRadius);
   };
   const double bowlCurvature = f.rise * outline.squareCurvature / squareRadius;
-  const double peakCurvature =
-      f.peak * (3 / kPeakRadiusSquared * outline.squareCurvature + 6 / kPeakRadiusSquared * outline.gradient * outline.gradient) /
-      squareRadius;
+  const double peakCurvature = f.peak *
+                               (3 / kPeakRadiusSquared * outline.squareCurvature +
+                                6 / kPeakRadiusSquared * outline.gradient * outline.gradient) /
+                               squareRadius;
   b.curvature = std::max(bowlCurvature, apronCurvature(inner)) + peakCurvature;
   b.outsideCurvature = std::max(bowlCurvature, apronCurvature(1));
   return b;
@@ -79,7 +80,8 @@ FeatureBounds rockBounds(const Feature& f) noexcept {
   FeatureBounds b;
   b.high = f.peak;
   b.slope = 2.425 * f.peak * outline.gradient / f.radius;
-  b.curvature = f.peak * (1.54 * outline.squareCurvature + 32 * outline.gradient * outline.gradient) / (f.radius * f.radius);
+  b.curvature =
+      f.peak * (1.54 * outline.squareCurvature + 32 * outline.gradient * outline.gradient) / (f.radius * f.radius);
   return b;
 }
 
@@ -112,13 +114,114 @@ BoundedComponent overlapping(std::span<const Feature> features, std::size_t subj
     sum.high += std::max(0.0, one.high);
     sum.slope += one.slope;
     // Landmarks are few and large: their kinks count as plain curvature, each with its own rounding.
-    sum.curvature += one.curvature + one.crestSlope * one.crestSlope / one.crestBlend + one.floorSlope * one.floorSlope / one.floorBlend;
+    sum.curvature += one.curvature + one.crestSlope * one.crestSlope / one.crestBlend +
+                     one.floorSlope * one.floorSlope / one.floorBlend;
   }
   return sum;
 }
 
 double jensenGap(double slope, double spacing, double blend) noexcept {
   return std::min(slope * spacing * 0.35356, slope * slope * spacing * spacing / (4 * blend));
+}
+
+constexpr double kAlways = std::numeric_limits<double>::infinity();
+
+void addNoiseBounds(std::span<const NoiseGroup> groups, std::vector<BoundedComponent>& out) {
+  const auto addNoise = [&](Part part, double wavelength, double amplitude) {
+    const double a = std::fabs(amplitude);
+    out.push_back({part, wavelength, -a * kNoiseBound, a * kNoiseBound, a * kNoiseSlope / wavelength,
+                   a * kNoiseCurvature / (wavelength * wavelength)});
+  };
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (std::size_t k = 0; k < groups[g].count; ++k) {
+      const NoiseOctave& octave = groups[g].octaves[k];
+      const double wavelength = 1 / octave.inverseWavelength;
+      if (g == 0) {
+        addNoise(Part::Relief, wavelength, octave.amplitude);
+        addNoise(Part::Lava, wavelength, octave.lavaAmplitude);
+      } else {
+        // The modulator is at least one octave longer: its own slope and curvature are worth half and a quarter.
+        const double m = groups[g].modulation * kNoiseBound;
+        addNoise(Part::Regolith, wavelength, octave.amplitude * (1 + m));
+        out.back().slope = octave.amplitude / wavelength *
+                           (kNoiseSlope * (1 + m) + groups[g].modulation * 0.5 * kNoiseSlope * kNoiseBound);
+        out.back().curvature =
+            octave.amplitude / (wavelength * wavelength) *
+            (kNoiseCurvature * (1 + m) +
+             groups[g].modulation * (kNoiseSlope * kNoiseSlope + 0.25 * kNoiseCurvature * kNoiseBound));
+      }
+    }
+  }
+}
+
+void addLandmarkBounds(std::span<const Feature> landmarks, std::vector<BoundedComponent>& out) {
+  // Landmark craters come by falling size, so those that a level leaves out are a tail: the k-th component is what the
+  // k-th adds.
+  BoundedComponent before{Part::Young, 0, 0, 0, 0, 0};
+  for (std::size_t k = landmarks.size(); k-- > 0;) {
+    BoundedComponent worst = before;
+    for (std::size_t subject = k; subject < landmarks.size(); ++subject) {
+      const BoundedComponent sum = overlapping(landmarks.subspan(k), subject - k);
+      worst.low = std::min(worst.low, sum.low);
+      worst.high = std::max(worst.high, sum.high);
+      worst.slope = std::max(worst.slope, sum.slope);
+      worst.curvature = std::max(worst.curvature, sum.curvature);
+    }
+    out.push_back({Part::Young, landmarks[k].radius, worst.low - before.low, worst.high - before.high,
+                   worst.slope - before.slope, worst.curvature - before.curvature});
+    before = worst;
+  }
+}
+
+void addBasinBounds(const Program& program, std::vector<BoundedComponent>& out) {
+  // Basins: slopes and curvatures from their closed forms, each taken where it is largest, all overlapping.
+  BoundedComponent basins{Part::Relief, kAlways, 0, 0, 0, 0};
+  for (std::size_t i = 0; i < program.basinCount; ++i) {
+    BoundedComponent sum{Part::Relief, kAlways, 0, 0, 0, 0};
+    for (std::size_t j = 0; j < program.basinCount; ++j) {
+      const Basin &a = program.basins[i], &b = program.basins[j];
+      const double dx = a.center[0] - b.center[0], dy = a.center[1] - b.center[1], dz = a.center[2] - b.center[2];
+      if (std::sqrt(dx * dx + dy * dy + dz * dz) > a.reach + b.reach) continue;
+      // u = r^2 / R^2 <= 1.45; |du| = 2 sqrt(u) / R. Bowl (1 - u^2)^3: |f'| sqrt(u) <= 1.66, ring (1 - q^2)^3: |f'|
+      // <= 1.9 / 0.45.
+      const double inverse = std::sqrt(b.inverseRadiusSquared);
+      sum.low -= b.depth;
+      sum.high += b.ring;
+      sum.slope += inverse * (2 * 1.66 * b.depth + 2 * 1.2042 * (1.9 / 0.45) * b.ring);
+      // |f''| <= 24 and 6 / 0.45^2, |f'| <= 2 and 1.9 / 0.45.
+      sum.curvature += b.inverseRadiusSquared *
+                       ((24 * 4 + 2 * 2) * b.depth + (6 / (0.45 * 0.45) * 4 * 1.45 + 2 * 1.9 / 0.45) * b.ring);
+    }
+    basins.low = std::min(basins.low, sum.low);
+    basins.high = std::max(basins.high, sum.high);
+    basins.slope = std::max(basins.slope, sum.slope);
+    basins.curvature = std::max(basins.curvature, sum.curvature);
+  }
+  out.push_back(basins);
+}
+
+void addPatchBounds(const Program& program, std::vector<BoundedComponent>& out) {
+  // dry is a product of factors in [0, 1]: its slope is at most the sum of theirs, its curvature at most sum + (sum of
+  // slopes)^2.
+  BoundedComponent patches{Part::Lava, kAlways, 0, 0, 0, 0};
+  const double rise = program.lavaTop - program.lavaFloor;
+  double drySlope = 0;
+  for (std::size_t i = 0; i < program.patchCount; ++i) {
+    double slope = 0, curvature = 0;
+    for (std::size_t j = 0; j < program.patchCount; ++j) {
+      const LavaPatch &a = program.patches[i], &b = program.patches[j];
+      const double dx = a.center[0] - b.center[0], dy = a.center[1] - b.center[1], dz = a.center[2] - b.center[2];
+      if (std::sqrt(dx * dx + dy * dy + dz * dz) > a.reach + b.reach) continue;
+      // Quintic fade of (u - inner) ramp, u <= 1: |fade'| <= 1.875, |fade''| <= 5.78.
+      slope += 1.875 * b.inverseRamp * 2 / b.reach;
+      curvature += (5.78 * b.inverseRamp * b.inverseRamp * 4 + 1.875 * b.inverseRamp * 2) / (b.reach * b.reach);
+    }
+    drySlope = std::max(drySlope, slope);
+    patches.curvature = std::max(patches.curvature, rise * (curvature + slope * slope));
+  }
+  patches.slope = rise * drySlope;
+  patches.low = -rise;
+  out.push_back(patches);
 }
 
 }  // namespace
@@ -155,34 +258,10 @@ FeatureBounds layerBounds(const FeatureLayer& layer, double bodyRadius) noexcept
   return worst;
 }
 
-LunarBounds::LunarBounds(const Program& program, std::span<const NoiseGroup> groups, std::span<const FeatureLayer> layers,
-                         std::span<const Feature> landmarks)
+LunarBounds::LunarBounds(const Program& program, std::span<const NoiseGroup> groups,
+                         std::span<const FeatureLayer> layers, std::span<const Feature> landmarks)
     : radius_(program.radius), lavaBlend_(program.lavaBlend), clampBlend_(program.clampBlend) {
-  constexpr double kAlways = std::numeric_limits<double>::infinity();
-  const auto addNoise = [&](Part part, double wavelength, double amplitude) {
-    const double a = std::fabs(amplitude);
-    components_.push_back({part, wavelength, -a * kNoiseBound, a * kNoiseBound, a * kNoiseSlope / wavelength,
-                           a * kNoiseCurvature / (wavelength * wavelength)});
-  };
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    for (std::size_t k = 0; k < groups[g].count; ++k) {
-      const NoiseOctave& octave = groups[g].octaves[k];
-      const double wavelength = 1 / octave.inverseWavelength;
-      if (g == 0) {
-        addNoise(Part::Relief, wavelength, octave.amplitude);
-        addNoise(Part::Lava, wavelength, octave.lavaAmplitude);
-      } else {
-        // The modulator is at least one octave longer: its own slope and curvature are worth half and a quarter.
-        const double m = groups[g].modulation * kNoiseBound;
-        addNoise(Part::Regolith, wavelength, octave.amplitude * (1 + m));
-        components_.back().slope = octave.amplitude / wavelength *
-                                   (kNoiseSlope * (1 + m) + groups[g].modulation * 0.5 * kNoiseSlope * kNoiseBound);
-        components_.back().curvature = octave.amplitude / (wavelength * wavelength) *
-                                       (kNoiseCurvature * (1 + m) + groups[g].modulation * (kNoiseSlope * kNoiseSlope +
-                                                                                            0.25 * kNoiseCurvature * kNoiseBound));
-      }
-    }
-  }
+  addNoiseBounds(groups, components_);
   for (const FeatureLayer& layer : layers) {
     const FeatureBounds b = layerBounds(layer, radius_);
     const Part part = layer.stage == FeatureStage::OldCrater ? Part::Relief : Part::Young;
@@ -190,64 +269,9 @@ LunarBounds::LunarBounds(const Program& program, std::span<const NoiseGroup> gro
                            b.slope + 3 * b.outsideSlope, b.curvature + 3 * b.outsideCurvature, b.crestSlope,
                            b.crestBlend, b.floorSlope, b.floorBlend});
   }
-  // Landmark craters come by falling size, so those that a level leaves out are a tail: the k-th component is what the k-th adds.
-  BoundedComponent before{Part::Young, 0, 0, 0, 0, 0};
-  for (std::size_t k = landmarks.size(); k-- > 0;) {
-    BoundedComponent worst = before;
-    for (std::size_t subject = k; subject < landmarks.size(); ++subject) {
-      const BoundedComponent sum = overlapping(landmarks.subspan(k), subject - k);
-      worst.low = std::min(worst.low, sum.low);
-      worst.high = std::max(worst.high, sum.high);
-      worst.slope = std::max(worst.slope, sum.slope);
-      worst.curvature = std::max(worst.curvature, sum.curvature);
-    }
-    components_.push_back({Part::Young, landmarks[k].radius, worst.low - before.low, worst.high - before.high,
-                           worst.slope - before.slope, worst.curvature - before.curvature});
-    before = worst;
-  }
-  // Basins and lava patches: slopes and curvatures from their closed forms, each taken where it is largest, all overlapping.
-  BoundedComponent basins{Part::Relief, kAlways, 0, 0, 0, 0}, patches{Part::Lava, kAlways, 0, 0, 0, 0};
-  for (std::size_t i = 0; i < program.basinCount; ++i) {
-    BoundedComponent sum{Part::Relief, kAlways, 0, 0, 0, 0};
-    for (std::size_t j = 0; j < program.basinCount; ++j) {
-      const Basin &a = program.basins[i], &b = program.basins[j];
-      const double dx = a.center[0] - b.center[0], dy = a.center[1] - b.center[1], dz = a.center[2] - b.center[2];
-      if (std::sqrt(dx * dx + dy * dy + dz * dz) > a.reach + b.reach) continue;
-      // u = r^2 / R^2 <= 1.45; |du| = 2 sqrt(u) / R. Bowl (1 - u^2)^3: |f'| sqrt(u) <= 1.66, ring (1 - q^2)^3: |f'| <= 1.9 / 0.45.
-      const double inverse = std::sqrt(b.inverseRadiusSquared);
-      sum.low -= b.depth;
-      sum.high += b.ring;
-      sum.slope += inverse * (2 * 1.66 * b.depth + 2 * 1.2042 * (1.9 / 0.45) * b.ring);
-      // |f''| <= 24 and 6 / 0.45^2, |f'| <= 2 and 1.9 / 0.45.
-      sum.curvature += b.inverseRadiusSquared * ((24 * 4 + 2 * 2) * b.depth +
-                                                 (6 / (0.45 * 0.45) * 4 * 1.45 + 2 * 1.9 / 0.45) * b.ring);
-    }
-    basins.low = std::min(basins.low, sum.low);
-    basins.high = std::max(basins.high, sum.high);
-    basins.slope = std::max(basins.slope, sum.slope);
-    basins.curvature = std::max(basins.curvature, sum.curvature);
-  }
-  components_.push_back(basins);
-  // dry is a product of factors in [0, 1]: its slope is at most the sum of theirs, its curvature at most sum + (sum of slopes)^2.
-  const double rise = program.lavaTop - program.lavaFloor;
-  double drySlope = 0;
-  for (std::size_t i = 0; i < program.patchCount; ++i) {
-    double slope = 0, curvature = 0;
-    for (std::size_t j = 0; j < program.patchCount; ++j) {
-      const LavaPatch &a = program.patches[i], &b = program.patches[j];
-      const double dx = a.center[0] - b.center[0], dy = a.center[1] - b.center[1], dz = a.center[2] - b.center[2];
-      if (std::sqrt(dx * dx + dy * dy + dz * dz) > a.reach + b.reach) continue;
-      // Quintic fade of (u - inner) ramp, u <= 1: |fade'| <= 1.875, |fade''| <= 5.78.
-      slope += 1.875 * b.inverseRamp * 2 / b.reach;
-      curvature += (5.78 * b.inverseRamp * b.inverseRamp * 4 + 1.875 * b.inverseRamp * 2) / (b.reach * b.reach);
-    }
-    drySlope = std::max(drySlope, slope);
-    patches.curvature = std::max(patches.curvature, rise * (curvature + slope * slope));
-  }
-  patches.slope = rise * drySlope;
-  patches.low = -rise;
-  components_.push_back(patches);
-
+  addLandmarkBounds(landmarks, components_);
+  addBasinBounds(program, components_);
+  addPatchBounds(program, components_);
   double rough = 0;
   for (const BoundedComponent& c : components_) rough += c.part == Part::Regolith ? c.omitted() : 0;
   range_ = {program.clampLow - rough, program.clampHigh + rough};
@@ -263,7 +287,10 @@ double LunarBounds::omittedAmplitudeMeters(double minWavelengthMeters, double fi
   const double total = std::max(sums[0], sums[1]) + sums[2] + sums[3];
   // What float32 may differ from double, where the two levels differ in it; and the rounding of fine levels.
   const bool mixed = minWavelengthMeters >= kCoarseWavelength && finestWavelengthMeters < kCoarseWavelength;
-  return std::min(total * (1 + 1e-9) + (mixed ? kCoarseRounding : total > 0 ? 1e-4 : 0), range_.maxMeters - range_.minMeters);
+  return std::min(total * (1 + 1e-9) + (mixed       ? kCoarseRounding
+                                        : total > 0 ? 1e-4
+                                                    : 0),
+                  range_.maxMeters - range_.minMeters);
 }
 
 double LunarBounds::interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept {
@@ -271,7 +298,8 @@ double LunarBounds::interpolationErrorMeters(double minWavelengthMeters, double 
   std::array<double, 4> errors{}, slopes{};
   for (const BoundedComponent& c : components_) {
     if (c.wavelength < minWavelengthMeters) continue;
-    // Along the sphere the second derivative also has the slope times the path's own curvature, at most 2 / R with the grid's warp.
+    // Along the sphere the second derivative also has the slope times the path's own curvature, at most 2 / R with the
+    // grid's warp.
     const double bend = c.curvature + c.slope * 4 / radius_;
     const auto part = static_cast<std::size_t>(c.part);
     const double kinks = 4 * jensenGap(c.crestSlope, s, c.crestBlend) + jensenGap(c.floorSlope, s, c.floorBlend);
@@ -280,7 +308,8 @@ double LunarBounds::interpolationErrorMeters(double minWavelengthMeters, double 
   }
   const double flood = jensenGap(slopes[0] + slopes[1], s, lavaBlend_);
   const double clamp = jensenGap(std::max(slopes[0], slopes[1]) + slopes[2], s, clampBlend_);
-  // Regolith is calmed by up to the dry land's slope times its own size: both are in the patches' slope, far below this allowance.
+  // Regolith is calmed by up to the dry land's slope times its own size: both are in the patches' slope, far below this
+  // allowance.
   const double total = std::max(errors[0], errors[1]) + flood + errors[2] + clamp + 1.05 * errors[3];
   const double rounding = minWavelengthMeters >= kCoarseWavelength ? 2 * kCoarseRounding : 1e-4;
   return std::min(total * (1 + 1e-9) + rounding, range_.maxMeters - range_.minMeters);

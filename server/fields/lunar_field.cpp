@@ -49,7 +49,8 @@ EvaluateBlock kernelFor(SimdPath path) noexcept {
 }
 
 void unitTimes(const double direction[3], double length, double out[3]) noexcept {
-  const double norm = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+  const double norm =
+      std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
   for (int i = 0; i < 3; ++i) out[i] = direction[i] / norm * length;
 }
 
@@ -64,7 +65,7 @@ void rotationOf(double w, double x, double y, double z, double m[9]) noexcept {
 
 /// A batch cut into compact blocks: rows x columns each.
 struct BlockGrid {
-  std::size_t rows, columns;          ///< of blocks
+  std::size_t rows, columns;            ///< of blocks
   std::size_t blockRows, blockColumns;  ///< samples, at most
 };
 BlockGrid blockGrid(const SampleBatch& batch) noexcept {
@@ -145,7 +146,8 @@ void LunarField::makeNoise() {
     NoiseOctave octave{};
     octave.inverseWavelength = std::ldexp(1.0, -exponent);
     const std::uint64_t h = mixHash(seed_ ^ mixHash(static_cast<std::uint64_t>(exponent + 64)));
-    for (int a = 0; a < 3; ++a) octave.offset[a] = hashUnit(mixHash(h ^ static_cast<std::uint64_t>(a + 1))) * 1000 - 0.5;
+    for (int a = 0; a < 3; ++a)
+      octave.offset[a] = hashUnit(mixHash(h ^ static_cast<std::uint64_t>(a + 1))) * 1000 - 0.5;
     octave.seed = static_cast<std::uint32_t>(h);
     octave.amplitude = amplitude;
     octave.lavaAmplitude = lava;
@@ -236,10 +238,16 @@ void LunarField::makeLandmarks() {
 class LunarField::Evaluation {
  public:
   Evaluation(const LunarField& field, const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out)
-      : field_(field), batch_(batch), minWavelength_(minWavelengthMeters), out_(out), scratch_(*out.scratch), program_(field.base_) {
+      : field_(field),
+        batch_(batch),
+        minWavelength_(minWavelengthMeters),
+        out_(out),
+        scratch_(*out.scratch),
+        program_(field.base_) {
     scratch_.groups.clear();
     for (NoiseGroup group : field.groups_) {
-      while (group.count > 0 && group.octaves[group.count - 1].inverseWavelength * minWavelengthMeters > 1) --group.count;
+      while (group.count > 0 && group.octaves[group.count - 1].inverseWavelength * minWavelengthMeters > 1)
+        --group.count;
       scratch_.groups.push_back(group);
     }
     program_.relief = scratch_.groups.front();
@@ -255,8 +263,8 @@ class LunarField::Evaluation {
     widestBall_ = kWidestBall * finest;
   }
 
-  /// Features are gathered for the whole batch where it is compact, as tiles are, else for each block, else for each sample: a ball
-  /// over half the Moon would hold more pebbles than there is time.
+  /// Features are gathered for the whole batch where it is compact, as tiles are, else for each block, else for each
+  /// sample: a ball over half the Moon would hold more pebbles than there is time.
   void run() {
     const Ball whole = scaled(boundingBall(batch_.x, batch_.y, batch_.z, batch_.count()));
     const bool compact = whole.radius <= widestBall_;
@@ -278,7 +286,8 @@ class LunarField::Evaluation {
   }
 
  private:
-  static constexpr double kWidestBall = 300;  ///< in wavelengths of the finest layer; a tile has a ball of some 25 to 50
+  static constexpr double kWidestBall =
+      300;  ///< in wavelengths of the finest layer; a tile has a ball of some 25 to 50
 
   double radius() const noexcept { return field_.radius_; }
   Ball scaled(Ball ball) const noexcept {
@@ -308,12 +317,14 @@ class LunarField::Evaluation {
     const std::size_t start = features.size();
     for (const Feature& f : field_.landmarkCraters_) {
       if (f.radius < minWavelength_) break;
-      const double dx = f.center[0] - ball.center[0], dy = f.center[1] - ball.center[1], dz = f.center[2] - ball.center[2];
+      const double dx = f.center[0] - ball.center[0], dy = f.center[1] - ball.center[1],
+                   dz = f.center[2] - ball.center[2];
       const double limit = f.reach + ball.radius;
       if (dx * dx + dy * dy + dz * dz <= limit * limit) features.push_back(f);
     }
     finishRun(start, FeatureStage::YoungCrater, program_.reliefInDouble);
-    for (std::size_t i = 0; i < scratch_.runs.size(); ++i) scratch_.runs[i].features = features.data() + scratch_.runStarts[i];
+    for (std::size_t i = 0; i < scratch_.runs.size(); ++i)
+      scratch_.runs[i].features = features.data() + scratch_.runStarts[i];
     program_.runs = scratch_.runs.data();
     program_.runCount = scratch_.runs.size();
   }
@@ -386,8 +397,8 @@ double LunarField::interpolationErrorMeters(double minWavelengthMeters, double s
 HeightRange LunarField::heightRange() const noexcept { return bounds_.heightRange(); }
 
 std::string LunarField::identity() const {
-  return fmt::format("lunar 1 seed={} mare={:a} craters={:a} roughness={:a} rocks={:a} finest={:a}", seed_, mareFraction_,
-                     craterDensity_, roughness_, rockDensity_, finestDetail_);
+  return fmt::format("lunar 1 seed={} mare={:a} craters={:a} roughness={:a} rocks={:a} finest={:a}", seed_,
+                     mareFraction_, craterDensity_, roughness_, rockDensity_, finestDetail_);
 }
 
 }  // namespace terrane

@@ -1,5 +1,7 @@
-// The lunar height field over one block of samples: part of every build of the lunar kernels. See lunar_field.h for the model.
-// Included after lunar_program.h and with kEvaluate naming the entry.
+// The lunar height field over one block of samples: part of every build of the lunar kernels. See lunar_field.h for the
+// model. Included after lunar_program.h and with kEvaluate naming the entry.
+
+#include "server/fields/lunar_noise.inl"
 
 namespace {
 
@@ -17,7 +19,8 @@ TERRANE_INLINE Blend roundedMax(double a, double b, double blend) {
   return {larger + blend * (1.0 / 6.0) * (t * t * t), difference < 0 ? half : 1.0 - half};
 }
 
-// ------------------------------------------------------------------------------------------------------------ relief and lava
+// ------------------------------------------------------------------------------------------------------------ relief
+// and lava
 
 void clearBlock(Block& b) {
   for (std::size_t i = 0; i < b.count; ++i) {
@@ -36,7 +39,8 @@ TERRANE_INLINE void rotateBack(const float* m, float x, float y, float z, float&
   bodyZ = (m[2] * x + m[5] * y) + m[8] * z;
 }
 
-/// Relief and lava are two sums over the same octaves. The last octave is left in `last` as the modulator of the first regolith group.
+/// Relief and lava are two sums over the same octaves. The last octave is left in `last` as the modulator of the first
+/// regolith group.
 template <class Real>
 void addRelief(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) {
   const RotatedBlock rotated = rotateBlock(b, group.rotation);
@@ -47,7 +51,8 @@ void addRelief(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) {
     const NoiseOctave& octave = group.octaves[k];
     evaluateOctave<Real>(rotated, octave, n);
     const double a = octave.amplitude, l = octave.lavaAmplitude;
-    const float da = static_cast<float>(a * octave.inverseWavelength), dl = static_cast<float>(l * octave.inverseWavelength);
+    const float da = static_cast<float>(a * octave.inverseWavelength),
+                dl = static_cast<float>(l * octave.inverseWavelength);
     const float toUnit = static_cast<float>(octave.inverseWavelength);
     const float weight = k < 2 ? 0.0f : 0.45f;  // mottling from some 250 km down
     for (std::size_t i = 0; i < b.count; ++i) {
@@ -85,8 +90,9 @@ void addBasin(const Basin& basin, Block& b) {
     const double r = (u - 1.0) * (1.0 / kRingHalfWidth);
     const double ring = r * r < 1.0 ? 1.0 - r * r : 0.0;
     b.relief[i] += basin.ring * (ring * ring * ring) - basin.depth * (bowl * bowl * bowl);
-    const double slope = (6.0 * basin.depth * u * (bowl * bowl) - 6.0 * basin.ring * (ring * ring) * r * (1.0 / kRingHalfWidth)) *
-                         (2.0 * basin.inverseRadiusSquared);
+    const double slope =
+        (6.0 * basin.depth * u * (bowl * bowl) - 6.0 * basin.ring * (ring * ring) * r * (1.0 / kRingHalfWidth)) *
+        (2.0 * basin.inverseRadiusSquared);
     b.reliefX[i] += static_cast<float>(slope * dx);
     b.reliefY[i] += static_cast<float>(slope * dy);
     b.reliefZ[i] += static_cast<float>(slope * dz);
@@ -110,7 +116,8 @@ void addPatch(const LavaPatch& patch, Block& b) {
   }
 }
 
-// ------------------------------------------------------------------------------------------------------------- regolith noise
+// -------------------------------------------------------------------------------------------------------------
+// regolith noise
 
 /// scale = 1 + modulation * last; the group's own last octave replaces it.
 void addRegolith(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) {
@@ -122,7 +129,8 @@ void addRegolith(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) 
   for (std::size_t k = 0; k < group.count; ++k) {
     const NoiseOctave& octave = group.octaves[k];
     evaluateOctave<float>(rotated, octave, n);
-    const float a = static_cast<float>(octave.amplitude), da = static_cast<float>(octave.amplitude * octave.inverseWavelength);
+    const float a = static_cast<float>(octave.amplitude),
+                da = static_cast<float>(octave.amplitude * octave.inverseWavelength);
     for (std::size_t i = 0; i < b.count; ++i) {
       sum.value[i] += a * n.value[i];
       sum.x[i] += da * n.x[i];
@@ -148,13 +156,8 @@ void addRegolith(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) 
   }
 }
 
-// ------------------------------------------------------------------------------------------------------------ craters, rocks
-
-/// Where a feature's height and gradient go.
-struct Target {
-  double* height;
-  float *x, *y, *z;
-};
+// ------------------------------------------------------------------------------------------------------------ craters,
+// rocks
 
 template <class Real>
 TERRANE_INLINE Real squareRoot(Real v);
@@ -177,8 +180,8 @@ struct Shape {
   Real apex, rise, floor, floorBlend, inverseFloorBlend, rim, rimBlend, inverseRimBlend, peak;
 };
 
-/// Bowl, flattened below by a floor, cut above by the apron of ejecta: roundedMin(roundedMax(bowl, floor), apron) + peak.
-/// Beyond kApronRadii the apron is 0 and the bowl far above it: exactly 0.
+/// Bowl, flattened below by a floor, cut above by the apron of ejecta: roundedMin(roundedMax(bowl, floor), apron) +
+/// peak. Beyond kApronRadii the apron is 0 and the bowl far above it: exactly 0.
 template <class Real>
 TERRANE_INLINE Profile<Real> craterProfile(const Shape<Real>& p, Real s) {
   const Real zero(0), one(1), half(0.5), sixth = Real(1.0 / 6.0);
@@ -219,8 +222,10 @@ TERRANE_INLINE Profile<Real> rockProfile(const Shape<Real>& p, Real s) {
   return {p.peak * (q * q), p.peak * (Real(-4) * s) * q};
 }
 
-template <class Real, bool Rock>
-TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape, Block& b, const Target& out, std::size_t begin) {
+/// The stage is a compile-time choice so that the compiler sees which arrays of the block are written, and vectorises.
+template <class Real, FeatureStage Stage>
+TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape, Block& b, std::size_t begin) {
+  constexpr bool kRock = Stage == FeatureStage::Rock, kOld = Stage == FeatureStage::OldCrater;
   const double cx = f.center[0], cy = f.center[1], cz = f.center[2];
   const Real ax = Real(f.axis1[0]), ay = Real(f.axis1[1]), az = Real(f.axis1[2]);
   const Real bx = Real(f.axis2[0]), by = Real(f.axis2[1]), bz = Real(f.axis2[2]);
@@ -232,7 +237,8 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
   }
   const float brightness = f.brightness, inverseHalo = f.inverseHaloSquared, rays = f.rays;
   for (std::size_t i = begin; i < begin + kChunk; ++i) {
-    const Real dx = static_cast<Real>(b.x[i] - cx), dy = static_cast<Real>(b.y[i] - cy), dz = static_cast<Real>(b.z[i] - cz);
+    const Real dx = static_cast<Real>(b.x[i] - cx), dy = static_cast<Real>(b.y[i] - cy),
+               dz = static_cast<Real>(b.z[i] - cz);
     const Real square = (dx * dx + dy * dy + dz * dz) * inverseSquared;
     const Real along = (dx * ax + dy * ay + dz * az) * inverse, across = (dx * bx + dy * by + dz * bz) * inverse;
     const Real inverseRange = Real(1) / squareRoot<Real>(along * along + across * across + Real(1e-12));
@@ -249,56 +255,61 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
     }
     const Real outline = Real(1) + lobes;
     const Real stretched = square * outline * outline;
-    const Profile<Real> h = Rock ? rockProfile<Real>(shape, stretched) : craterProfile<Real>(shape, stretched);
+    const Profile<Real> h = kRock ? rockProfile<Real>(shape, stretched) : craterProfile<Real>(shape, stretched);
 
     const Real radial = h.slope * Real(2) * outline * outline * inverseSquared;
     const Real angular = h.slope * Real(2) * square * outline * turn * inverseRange * inverse;
-    out.height[i] += static_cast<double>(h.value);
-    out.x[i] += static_cast<float>(radial * dx + angular * (c * bx - s * ax));
-    out.y[i] += static_cast<float>(radial * dy + angular * (c * by - s * ay));
-    out.z[i] += static_cast<float>(radial * dz + angular * (c * bz - s * az));
+    (kOld ? b.relief : b.young)[i] += static_cast<double>(h.value);
+    (kOld ? b.reliefX : b.youngX)[i] += static_cast<float>(radial * dx + angular * (c * bx - s * ax));
+    (kOld ? b.reliefY : b.youngY)[i] += static_cast<float>(radial * dy + angular * (c * by - s * ay));
+    (kOld ? b.reliefZ : b.youngZ)[i] += static_cast<float>(radial * dz + angular * (c * bz - s * az));
 
     // The halo's rays lean on the last lobe (order 5).
     const float rest = 1.0f - static_cast<float>(square) * inverseHalo;
     const float halo = rest > 0.0f ? rest : 0.0f;
-    b.bright[i] += brightness * (halo * halo) * (1.0f + rays * static_cast<float>(cosine * (square / (square + Real(2)))));
+    b.bright[i] +=
+        brightness * (halo * halo) * (1.0f + rays * static_cast<float>(cosine * (square / (square + Real(2)))));
   }
 }
 
-template <class Real, bool Rock>
-void addFeatures(const FeatureRun& run, Block& b, const Target& out) {
+template <class Real, FeatureStage Stage>
+void addFeatures(const FeatureRun& run, Block& b) {
   for (std::size_t k = 0; k < run.count; ++k) {
     const Feature& f = run.features[k];
     if (!reaches(b, f.center, f.reach)) continue;
-    const Shape<Real> shape{Real(f.apex),       Real(f.rise), Real(f.floor),    Real(f.floorBlend),     Real(1.0 / f.floorBlend),
-                            Real(f.rim), Real(f.rimBlend), Real(1.0 / f.rimBlend), Real(f.peak)};
+    const Shape<Real> shape{
+        Real(f.apex), Real(f.rise),     Real(f.floor),          Real(f.floorBlend), Real(1.0 / f.floorBlend),
+        Real(f.rim),  Real(f.rimBlend), Real(1.0 / f.rimBlend), Real(f.peak)};
     for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
       const double* q = b.chunkCenter[chunk];
       const double dx = q[0] - f.center[0], dy = q[1] - f.center[1], dz = q[2] - f.center[2];
       const double limit = f.reach + b.chunkRadius[chunk];
       if (dx * dx + dy * dy + dz * dz > limit * limit) continue;
-      addFeatureToChunk<Real, Rock>(f, shape, b, out, chunk * kChunk);
+      addFeatureToChunk<Real, Stage>(f, shape, b, chunk * kChunk);
     }
   }
 }
 
 void addRun(const FeatureRun& run, Block& b) {
-  const Target relief{b.relief, b.reliefX, b.reliefY, b.reliefZ}, young{b.young, b.youngX, b.youngY, b.youngZ};
-  const Target& target = run.stage == FeatureStage::OldCrater ? relief : young;
-  if (run.stage == FeatureStage::Rock) {
-    addFeatures<float, true>(run, b, target);
-  } else if (run.inDouble) {
-    addFeatures<double, false>(run, b, target);
-  } else {
-    addFeatures<float, false>(run, b, target);
+  switch (run.stage) {
+    case FeatureStage::OldCrater:
+      return run.inDouble ? addFeatures<double, FeatureStage::OldCrater>(run, b)
+                          : addFeatures<float, FeatureStage::OldCrater>(run, b);
+    case FeatureStage::YoungCrater:
+      return run.inDouble ? addFeatures<double, FeatureStage::YoungCrater>(run, b)
+                          : addFeatures<float, FeatureStage::YoungCrater>(run, b);
+    case FeatureStage::Rock:
+      return addFeatures<float, FeatureStage::Rock>(run, b);
   }
 }
 
-/// Streaks: the sum of three waves of orders 6, 11 and 17, sharpened, broken up by mottling, faded with distance. Reflectance only.
+/// Streaks: the sum of three waves of orders 6, 11 and 17, sharpened, broken up by mottling, faded with distance.
+/// Reflectance only.
 void addRays(const RaySystem& system, Block& b) {
   for (std::size_t i = 0; i < b.count; ++i) {
     const double px = b.x[i] - system.center[0], py = b.y[i] - system.center[1], pz = b.z[i] - system.center[2];
-    const float square = static_cast<float>((px * px + py * py + pz * pz) * (system.inverseRadius * system.inverseRadius));
+    const float square =
+        static_cast<float>((px * px + py * py + pz * pz) * (system.inverseRadius * system.inverseRadius));
     const float along = static_cast<float>(px * system.axis1[0] + py * system.axis1[1] + pz * system.axis1[2]);
     const float across = static_cast<float>(px * system.axis2[0] + py * system.axis2[1] + pz * system.axis2[2]);
     const float inverseRange = 1.0f / __builtin_sqrtf(along * along + across * across + 1e-12f);
@@ -322,9 +333,11 @@ void addRays(const RaySystem& system, Block& b) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------- composition
+// ----------------------------------------------------------------------------------------------------------------
+// composition
 
-/// Floods the relief, adds what is young, clamps (C2, so that no sum of overlapping features leaves the stated range), roughens.
+/// Floods the relief, adds what is young, clamps (C2, so that no sum of overlapping features leaves the stated range),
+/// roughens.
 void composeHeight(const Program& p, Block& b) {
   const float smoothing = static_cast<float>(p.mareSmoothing);
   const float lavaRise = static_cast<float>(p.lavaTop - p.lavaFloor);
@@ -362,7 +375,8 @@ void composeHeight(const Program& p, Block& b) {
     const float squareSlope = (gx * gx + gy * gy) + gz * gz;
     const float steep = squareSlope / (squareSlope + 0.5f);
     const float uplift = static_cast<float>(b.relief[i] * p.inverseReliefAmplitude);
-    const float highland = 0.138f + 0.012f * uplift, basalt = 0.055f + 0.004f * static_cast<float>(b.lava[i]) * lavaTint;
+    const float highland = 0.138f + 0.012f * uplift,
+                basalt = 0.055f + 0.004f * static_cast<float>(b.lava[i]) * lavaTint;
     const float mottling = 1.0f + 0.10f * b.mottle[i] + 0.35f * steep;
     const float tint = (basalt + land * (highland - basalt)) * mottling + b.bright[i];
     b.reflectance[i] = tint < 0.03f ? 0.03f : tint > 0.38f ? 0.38f : tint;
@@ -374,7 +388,8 @@ void composeHeight(const Program& p, Block& b) {
 void kEvaluate(const Program& program, Block& block) noexcept {
   clearBlock(block);
   OctaveSamples<float> modulator;
-  for (std::size_t i = 0; i < block.count; ++i) modulator.value[i] = modulator.x[i] = modulator.y[i] = modulator.z[i] = 0.0f;
+  for (std::size_t i = 0; i < block.count; ++i)
+    modulator.value[i] = modulator.x[i] = modulator.y[i] = modulator.z[i] = 0.0f;
   if (program.reliefInDouble) {
     addRelief<double>(program.relief, block, modulator);
   } else {

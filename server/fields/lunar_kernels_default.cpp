@@ -6,7 +6,6 @@
 namespace terrane::lunar {
 
 #define kEvaluate evaluateBlockDefault
-#include "server/fields/lunar_noise.inl"
 #include "server/fields/lunar_kernels.inl"
 
 }  // namespace terrane::lunar

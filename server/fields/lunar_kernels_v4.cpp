@@ -6,7 +6,6 @@
 namespace terrane::lunar {
 
 #define kEvaluate evaluateBlockV4
-#include "server/fields/lunar_noise.inl"
 #include "server/fields/lunar_kernels.inl"
 
 }  // namespace terrane::lunar

@@ -1,8 +1,8 @@
 #pragma once
-// The places that make the Moon recognisable: its great basins, the lava plains, and the young craters with rays. Positions and
-// diameters after the IAU Gazetteer of Planetary Nomenclature, depths rounded from published altimetry; sizes are for the Moon's
-// radius and scale with the body's. Directions are written out as numbers (x, y, z for longitude 0 on +X, north on +Z) because no
-// trigonometry may reach a tile; they are normalised on use.
+// The places that make the Moon recognisable: its great basins, the lava plains, and the young craters with rays.
+// Positions and diameters after the IAU Gazetteer of Planetary Nomenclature, depths rounded from published altimetry;
+// sizes are for the Moon's radius and scale with the body's. Directions are written out as numbers (x, y, z for
+// longitude 0 on +X, north on +Z) because no trigonometry may reach a tile; they are normalised on use.
 
 #include <span>
 

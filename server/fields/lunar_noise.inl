@@ -1,6 +1,6 @@
-// Gradient noise: part of every build of the lunar kernels (lunar_kernels_*.cpp). Classic Perlin noise (Perlin 2002, "Improving
-// noise") with the twelve edge directions chosen by an integer hash and the quintic fade, so twice continuously differentiable.
-// Only + - * on floats and integer operations: every vector build gives the same bits.
+// Gradient noise: part of every build of the lunar kernels (lunar_kernels_*.cpp). Classic Perlin noise (Perlin 2002,
+// "Improving noise") with the twelve edge directions chosen by an integer hash and the quintic fade, so twice
+// continuously differentiable. Only + - * on floats and integer operations: every vector build gives the same bits.
 
 namespace {
 
@@ -89,9 +89,9 @@ TERRANE_INLINE Noise<Real> noiseInCell(const Cell& cell, Real fx, Real fy, Real 
   const Real y0 = x0 + v * s0, y1 = x2 + v * s1;
   const Real alongU = lerp(lerp(e0, e1, v), lerp(e2, e3, v), w), alongV = lerp(s0, s1, w), alongW = y1 - y0;
 
-#define TERRANE_AT(axis)                                                                                       \
-  static_cast<Real>(c[0].axis), static_cast<Real>(c[1].axis), static_cast<Real>(c[2].axis),                    \
-      static_cast<Real>(c[3].axis), static_cast<Real>(c[4].axis), static_cast<Real>(c[5].axis),                \
+#define TERRANE_AT(axis)                                                                        \
+  static_cast<Real>(c[0].axis), static_cast<Real>(c[1].axis), static_cast<Real>(c[2].axis),     \
+      static_cast<Real>(c[3].axis), static_cast<Real>(c[4].axis), static_cast<Real>(c[5].axis), \
       static_cast<Real>(c[6].axis), static_cast<Real>(c[7].axis)
   Noise<Real> n;
   n.value = y0 + w * alongW;
@@ -121,7 +121,8 @@ TERRANE_INLINE std::uint32_t cellIndex(double t) {
 }
 
 template <class Real>
-void octaveInOneCell(const RotatedBlock& block, const NoiseOctave& octave, const double* first, OctaveSamples<Real>& out) {
+void octaveInOneCell(const RotatedBlock& block, const NoiseOctave& octave, const double* first,
+                     OctaveSamples<Real>& out) {
   const double inverse = octave.inverseWavelength;
   const double ox = octave.offset[0], oy = octave.offset[1], oz = octave.offset[2];
   const double rx = roundToCell(first[0]), ry = roundToCell(first[1]), rz = roundToCell(first[2]);

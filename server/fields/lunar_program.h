@@ -1,17 +1,20 @@
 #pragma once
-// What the lunar kernels run: plain tables (noise octaves, landmarks, craters and rocks) and the block of samples that they work on.
-// Plain data only, so that the vector builds of the kernels emit no inline function that the linker could pick for code that
-// must run on older CPUs. Body frame, metres. Tables are read-only during a run; a block belongs to one thread.
+// What the lunar kernels run: plain tables (noise octaves, landmarks, craters and rocks) and the block of samples that
+// they work on. Plain data only, so that the vector builds of the kernels emit no inline function that the linker could
+// pick for code that must run on older CPUs. Body frame, metres. Tables are read-only during a run; a block belongs to
+// one thread.
 
 #include <cstddef>
 #include <cstdint>
 
 namespace terrane::lunar {
 
-/// From this wavelength on a level computes everything in float32: its rounding, below kCoarseRounding in all, is nothing beside the
-/// level's cells. Finer levels take the large features in double, or they would show steps of a tenth of a millimetre.
-inline constexpr double kCoarseWavelength = 64.0;
-inline constexpr double kCoarseRounding = 0.05;
+/// From this wavelength on a level computes everything in float32: its rounding, below kCoarseRounding in all (some
+/// thirty roundings of 2^-24 in each of at most 45 km of amplitudes, were all features to meet in one place), is
+/// nothing beside the level's cells. Finer levels take the large features in double, or they would show steps of a
+/// tenth of a millimetre.
+inline constexpr double kCoarseWavelength = 4.0;
+inline constexpr double kCoarseRounding = 0.1;
 
 /// Samples are worked on in compact blocks that stay in the first-level cache, in steps of one AVX-512 vector.
 inline constexpr std::size_t kChunk = 16;
@@ -78,8 +81,8 @@ struct Feature {
   float brightness, inverseHaloSquared, rays;
 };
 
-inline constexpr double kApronRadii = 2.2;         ///< ejecta end here, in crater radii
-inline constexpr double kPeakRadiusSquared = 0.06; ///< central peak, in crater radii squared
+inline constexpr double kApronRadii = 2.2;          ///< ejecta end here, in crater radii
+inline constexpr double kPeakRadiusSquared = 0.06;  ///< central peak, in crater radii squared
 
 enum class FeatureStage : std::uint8_t { OldCrater, YoungCrater, Rock };
 
@@ -95,7 +98,7 @@ struct Program {
   double radius;
   NoiseGroup relief;  ///< two sums: relief and lava
   bool reliefInDouble;
-  const NoiseGroup* regolith;    ///< float32
+  const NoiseGroup* regolith;  ///< float32
   std::size_t regolithCount;
   const Basin* basins;
   std::size_t basinCount;

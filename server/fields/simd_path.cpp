@@ -14,8 +14,9 @@ bool simdPathSupported(SimdPath path) noexcept {
     case SimdPath::V3:
       return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
     case SimdPath::V4:
-      return simdPathSupported(SimdPath::V3) && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-             __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+      return simdPathSupported(SimdPath::V3) && __builtin_cpu_supports("avx512f") &&
+             __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 #else
     case SimdPath::V3:
     case SimdPath::V4:

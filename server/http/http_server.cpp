@@ -9,14 +9,9 @@
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <cstring>
 #include <ctime>
 #include <exception>
 #include <list>
@@ -24,165 +19,20 @@
 #include <thread>
 #include <utility>
 
-#include "server/http/http_date.h"
+#include "server/http/http_session.h"
 #include "server/http/listen_address.h"
 #include "server/http/problem.h"
-#include "server/http/request_parser.h"
 
 namespace terrane {
 namespace {
 
-namespace net = boost::asio;
-using boost::system::error_code;
-using Clock = std::chrono::steady_clock;
-using Executor = net::io_context::executor_type;
-using Tcp = net::ip::tcp;
-using Socket = net::basic_stream_socket<Tcp, Executor>;
-using Acceptor = net::basic_socket_acceptor<Tcp, Executor>;
-using Timer = net::basic_waitable_timer<Clock, net::wait_traits<Clock>, Executor>;
+using namespace http;
 template <class T>
 using Task = net::awaitable<T, Executor>;
 constexpr auto kErrorAndValue = net::as_tuple(net::use_awaitable_t<Executor>{});
 
 constexpr std::chrono::milliseconds kAcceptBackoff{100};
-constexpr std::chrono::milliseconds kLingerTimeout{1'000};
 constexpr std::size_t kMaxLingerBytes = 256 * 1024;
-
-struct Session;
-
-/// One I/O thread: its sessions, and one timer that looks for those whose time is over. That costs a session two reads
-/// of the clock a request, where a timer for each operation would cost several heap operations.
-struct IoThread {
-  IoThread(const ServerOptions& o, TileService& s) : options(o), service(s) {}
-
-  const ServerOptions& options;
-  TileService& service;
-  std::list<Session*> sessions;
-  HeadEndings endings;
-  bool stopping = false;
-  bool tickArmed = false;
-  Clock::time_point graceEnd{};
-  std::atomic<std::size_t> connections{0};
-  net::io_context context{1};  // destroyed before all of the above: suspended sessions end with it
-  std::optional<net::executor_work_guard<Executor>> work{context.get_executor()};
-  Timer tick{context};
-
-  void run();
-  void armTick();
-  void checkDeadlines();
-  void beginStop();
-};
-
-/// A response that is being made. Touched by its I/O thread only.
-struct Pending {
-  std::optional<ServiceResponse> response;
-  Session* waiter = nullptr;
-  bool peerGone = false;
-};
-
-/// One connection.
-///   Starting -> Reading -> Waiting -> Writing -> Idle -> Reading ...
-///        any of them -> Closing (what the peer still sends is read and thrown away)
-struct Session {
-  enum class Phase { Starting, Idle, Reading, Waiting, Writing, Closing };
-
-  Session(IoThread& thread, Socket s)
-      : io(thread), socket(std::move(s)), wake(thread.context), input(thread.options.maxHeaderBytes) {
-    position = io.sessions.insert(io.sessions.end(), this);
-    enter(Phase::Starting, io.options.headerTimeout);
-    io.armTick();
-  }
-  ~Session() {
-    io.sessions.erase(position);
-    if (io.stopping && io.sessions.empty()) io.tick.cancel();
-  }
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
-
-  void enter(Phase next, std::chrono::milliseconds limit) {
-    phase = next;
-    timedOut = false;
-    deadline = Clock::now() + limit;
-  }
-  /// Ends whatever the session waits for; it then looks at timedOut, closed and the thread's stopping.
-  void interrupt() {
-    error_code ignored;
-    if (socket.is_open()) socket.cancel(ignored);
-    wake.cancel();
-  }
-  void close() {
-    closed = true;
-    error_code ignored;
-    socket.close(ignored);
-    wake.cancel();
-  }
-  bool betweenRequests() const { return phase == Phase::Idle || phase == Phase::Starting; }
-  void consume(std::size_t bytes) {
-    used -= bytes;
-    if (used > 0 && bytes > 0) std::memmove(input.data(), input.data() + bytes, used);
-  }
-
-  IoThread& io;
-  Socket socket;
-  Timer wake;
-  std::list<Session*>::iterator position;
-  Phase phase = Phase::Starting;
-  Clock::time_point deadline{};
-  bool timedOut = false;
-  bool closed = false;
-  std::vector<char> input;  ///< the first `used` bytes: read, not yet parsed
-  std::size_t used = 0;
-  std::size_t headerBytes = 0;
-  RequestFields fields;
-  std::optional<RequestParser> parser;
-  std::string ending;
-};
-
-void IoThread::run() {
-  for (;;) {
-    try {
-      context.run();
-      return;
-    } catch (const std::exception& error) {
-      spdlog::error("an I/O thread went on after: {}", error.what());
-    }
-  }
-}
-
-void IoThread::armTick() {
-  if (tickArmed || sessions.empty()) return;
-  tickArmed = true;
-  const auto shortest = std::min({options.headerTimeout, options.idleTimeout, options.writeTimeout,
-                                  options.responseTimeout, options.shutdownGrace, kLingerTimeout});
-  tick.expires_after(std::clamp(shortest / 4, std::chrono::milliseconds(5), std::chrono::milliseconds(500)));
-  tick.async_wait([this](error_code failure) {
-    tickArmed = false;
-    if (failure) return;
-    checkDeadlines();
-    armTick();
-  });
-}
-
-void IoThread::checkDeadlines() {
-  const Clock::time_point now = Clock::now();
-  const bool graceOver = stopping && now >= graceEnd;
-  for (Session* session : sessions) {
-    if (graceOver) {
-      session->close();
-    } else if (now >= session->deadline) {
-      session->timedOut = true;
-      session->interrupt();
-    }
-  }
-}
-
-void IoThread::beginStop() {
-  stopping = true;
-  graceEnd = Clock::now() + options.shutdownGrace;
-  for (Session* session : sessions)
-    if (session->betweenRequests()) session->interrupt();
-  work.reset();
-}
 
 HeadEndings::Connection connectionField(const Session& session, bool keep) {
   if (!keep) return HeadEndings::Connection::Closed;
@@ -224,40 +74,6 @@ Task<bool> writeResponse(Session& session, const ServiceResponse& response, bool
   if (failure && failure != net::error::would_block) co_return false;
   if (advance(buffers, failure ? 0 : bytes)) co_return true;
   co_return co_await writeRest(session, buffers);
-}
-
-enum class ReadOutcome { Request, Closed, TimedOut, LineTooLong, HeaderTooLarge, BadVersion, Malformed };
-
-/// "METHOD target HTTP/2.0": well formed, of a version that is not served. (Beast calls more than that a bad version.)
-bool namesAnotherVersion(std::string_view input) {
-  const std::size_t end = input.find("\r\n");
-  if (end == std::string_view::npos || end < 8 || std::ranges::count(input.substr(0, end), ' ') != 2) return false;
-  const std::string_view version = input.substr(end - 8, 8);
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  return version.starts_with("HTTP/") && digit(version[5]) && version[6] == '.' && digit(version[7]);
-}
-
-ReadOutcome classify(const error_code& failure, const Session& session) {
-  using Http = boost::beast::http::error;
-  if (failure == Http::header_limit)
-    return session.fields.requestLineRead ? ReadOutcome::HeaderTooLarge : ReadOutcome::LineTooLong;
-  if (failure == Http::bad_version && namesAnotherVersion({session.input.data(), session.used}))
-    return ReadOutcome::BadVersion;
-  return ReadOutcome::Malformed;
-}
-
-/// Parses what has been read; empty when more is needed.
-std::optional<ReadOutcome> parseInput(Session& session) {
-  error_code failure;
-  const std::size_t taken = session.parser->put(net::const_buffer(session.input.data(), session.used), failure);
-  session.headerBytes += taken;
-  session.consume(taken);
-  if (session.headerBytes > session.io.options.maxHeaderBytes) return ReadOutcome::HeaderTooLarge;
-  if (failure && failure != boost::beast::http::error::need_more) return classify(failure, session);
-  if (session.parser->is_header_done()) return ReadOutcome::Request;
-  if (session.used == session.input.size())
-    return session.fields.requestLineRead ? ReadOutcome::HeaderTooLarge : ReadOutcome::LineTooLong;
-  return std::nullopt;
 }
 
 Task<ReadOutcome> readRequest(Session& session) {
@@ -329,39 +145,6 @@ Task<std::optional<ServiceResponse>> respond(Session& session, const std::shared
     pending->response = problemResponse(makeError(ErrorKind::Timeout, "", "the tile was not built in time"), 503,
                                         session.fields.target);
   co_return std::move(pending->response);
-}
-
-/// What the HTTP layer refuses by itself. Such a connection is closed, since where its next request begins is not
-/// known.
-std::optional<ServiceResponse> refusal(const Session& session, ReadOutcome outcome) {
-  const std::string& target = session.fields.target;
-  switch (outcome) {
-    case ReadOutcome::Request:
-      break;
-    case ReadOutcome::Closed:
-      return std::nullopt;
-    case ReadOutcome::TimedOut:
-      return problemResponse(makeError(ErrorKind::Timeout, "header", "the request's header did not end in time"), 408,
-                             target);
-    case ReadOutcome::LineTooLong:
-      return problemResponse(makeError(ErrorKind::TooLarge, "target", "the request line is too long"), 414, "");
-    case ReadOutcome::HeaderTooLarge:
-      return problemResponse(
-          makeError(ErrorKind::TooLarge, "header",
-                    fmt::format("the header is too large; allowed: {} bytes", session.io.options.maxHeaderBytes)),
-          431, target);
-    case ReadOutcome::BadVersion:
-      return problemResponse(makeError(ErrorKind::Unsupported, "version", "allowed: HTTP/1.1 and HTTP/1.0"), 505, "");
-    case ReadOutcome::Malformed:
-      return problemResponse(makeError(ErrorKind::Malformed, "header", "not an HTTP/1.1 request"), 400, target);
-  }
-  const bool hasBody = session.parser->chunked() || session.parser->content_length().value_or(0) > 0;
-  if (hasBody && session.fields.method != HttpMethod::Other)
-    return problemResponse(makeError(ErrorKind::TooLarge, "body", "requests here have no body"), 413, target);
-  if (session.fields.version == 11 && session.fields.hostFields != 1)
-    return problemResponse(makeError(ErrorKind::InvalidArgument, "Host", "HTTP/1.1 requests have one Host field"), 400,
-                           target);
-  return std::nullopt;
 }
 
 /// Closes so that the peer can still read what it was sent: a socket closed on unread input resets the connection.

@@ -307,12 +307,14 @@ TEST(Placement, TheCameraIsRoundedDownToTheLatticeOnNegativeAxesToo) {
   EXPECT_EQ(camera.rest.z, 0.5f);
 }
 
-TEST(Placement, SplitFloatsCarryFortyEightBits) {
-  const double value = 1737400.123456789;
-  const FloatPairVec pair = splitToFloats({value, -value, 0});
-  EXPECT_LE(std::abs(static_cast<double>(pair.high.x) + static_cast<double>(pair.low.x) - value), std::ldexp(value, -48));
-  EXPECT_EQ(pair.high.y, -pair.high.x);
-  EXPECT_EQ(pair.low.z, 0.0f);
+TEST(Placement, SplitFloatsCarryFortyEightBitsOnEveryAxis) {
+  const glm::dvec3 value(1737400.123456789, -679505.45025, 29406.3985);
+  const FloatPairVec pair = splitToFloats(value);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double sum = static_cast<double>(pair.high[axis]) + static_cast<double>(pair.low[axis]);
+    EXPECT_LE(std::abs(sum - value[axis]), std::ldexp(std::abs(value[axis]), -48)) << "axis " << axis;
+    EXPECT_NE(pair.low[axis], 0.0f) << "axis " << axis;
+  }
 }
 
 }  // namespace

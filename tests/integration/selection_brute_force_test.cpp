@@ -33,14 +33,14 @@ constexpr int kDefaultCameras = 10;
 #else
 constexpr int kDefaultCameras = 120;
 #endif
-/// A quarter of the served cells a tile, and four times the tolerance: the tiles that are asked for are as large as served ones.
-constexpr int kCells = 16;
-constexpr double kErrorPixels = 8.0;
-
 long environmentNumber(const char* name, long otherwise) {
   const char* text = std::getenv(name);
   return text != nullptr ? std::strtol(text, nullptr, 10) : otherwise;
 }
+
+/// A quarter of the served cells a tile, and four times the tolerance: the tiles that are asked for are as large as served ones.
+const int kCells = static_cast<int>(environmentNumber("TERRANE_CELLS",16));
+const double kErrorPixels = 128.0/kCells;
 
 /// What a tile's surface is made of, and what selection is told of it.
 struct Ground {
@@ -68,7 +68,7 @@ class Terrain {
       return ground;
     }
     ground.resident = {tile->metadata.subtreeHeights, tile->metadata.heights};
-    for (std::size_t vertex = 0; vertex < (kCells + 1) * (kCells + 1); ++vertex) {
+    for (std::size_t vertex = 0; vertex < static_cast<std::size_t>((kCells + 1) * (kCells + 1)); ++vertex) {
       const std::uint16_t* offset = tile->mesh.offsets.data() + 3 * vertex;
       ground.points.push_back(latticePosition(tile->metadata.origin + LatticePoint(offset[0], offset[1], offset[2]),
                                               tile->metadata.stepExponent));
@@ -136,9 +136,9 @@ class Sight {
   }
 
   bool seesTriangle(const Ground& ground) const {
-    constexpr std::size_t kSide = kCells + 1;
-    for (std::size_t j = 0; j < kCells; ++j) {
-      for (std::size_t i = 0; i < kCells; ++i) {
+    const std::size_t kSide = kCells + 1;
+    for (std::size_t j = 0; j + 1 < kSide; ++j) {
+      for (std::size_t i = 0; i + 1 < kSide; ++i) {
         const std::size_t at = j * kSide + i;
         if (seesPolygon({ground.points[at], ground.points[at + 1], ground.points[at + kSide + 1]}) ||
             seesPolygon({ground.points[at], ground.points[at + kSide + 1], ground.points[at + kSide]}))
@@ -174,12 +174,13 @@ class Sight {
 
 struct Count {
   long cameras = 0, asked = 0, leaves = 0, culled = 0;
+  long loaded = 0;                  ///< asked for at any time on the way
   long omitted = 0;                 ///< culled, with a visible vertex
   long withoutVertex = 0;           ///< leaves asked for without a visible vertex
   long withoutTriangle = 0;         ///< of these: without any part of a triangle in view either
   long askedWithoutTriangle = 0;    ///< the same of all tiles asked for, ancestors included
   Count& operator+=(const Count& o) {
-    cameras += o.cameras, asked += o.asked, leaves += o.leaves, culled += o.culled, omitted += o.omitted;
+    cameras += o.cameras, loaded += o.loaded, asked += o.asked, leaves += o.leaves, culled += o.culled, omitted += o.omitted;
     withoutVertex += o.withoutVertex, withoutTriangle += o.withoutTriangle, askedWithoutTriangle += o.askedWithoutTriangle;
     return *this;
   }
@@ -204,17 +205,17 @@ Count judge(const Camera& camera, GroundCache& ground) {
   std::unordered_set<FacePath> residents;
   const ResidentLookup lookup = [&](const FacePath& path) { return residents.contains(path) ? &ground[path].resident : nullptr; };
   TileSelection selection;
-  for (std::size_t before = 1; before != 0;) {
+  for (bool news = true; news;) {
     selection = selectTiles(camera, terrain().body(), lookup, {.errorPixels = kErrorPixels});
-    before = residents.size();
-    for (const WantedTile& tile : selection.wanted) residents.insert(tile.path);
-    if (residents.size() == before) break;
+    news = false;
+    for (const WantedTile& tile : selection.wanted) news = residents.insert(tile.path).second || news;
   }
   EXPECT_TRUE(selection.complete);
 
   const Sight sight(camera);
   Count count;
   count.cameras = 1;
+  count.loaded = static_cast<long>(residents.size());
   for (const WantedTile& tile : selection.wanted) {
     ++count.asked;
     count.leaves += tile.leaf;
@@ -257,7 +258,8 @@ TEST(SelectionBruteForce, OmitsNoVisibleVertexAndAsksForFewTilesOutOfView) {
   workers.clear();
 
   const auto percent = [&](long part, long whole) { return 100.0 * static_cast<double>(part) / static_cast<double>(std::max(1L, whole)); };
-  std::printf("seed %ld, %ld cameras, %ld tiles asked for (%ld leaves), %ld culled\n", seed, total.cameras, total.asked, total.leaves, total.culled);
+  std::printf("seed %ld, %ld cameras, %ld tiles asked for (%ld leaves; %ld on the way), %ld culled\n", seed, total.cameras, total.asked,
+              total.leaves, total.loaded, total.culled);
   std::printf("omitted with a visible vertex: %ld\n", total.omitted);
   std::printf("leaves asked for without a visible vertex: %ld (%.2f %%); without a visible part of a triangle: %ld (%.2f %%)\n",
               total.withoutVertex, percent(total.withoutVertex, total.leaves), total.withoutTriangle,

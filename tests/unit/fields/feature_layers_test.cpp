@@ -37,7 +37,8 @@ TEST(FeatureLayers, NoTwoBowlsOfALayerOverlapAndAtMostFourFeaturesTouchAPoint) {
     for (int i = 0; i < 60; ++i) {
       glm::dvec3 d = randomDirection(random);
       // Corners and edges of the cube are the hard places: cells are narrowest there.
-      if (i % 3 == 0) d = glm::normalize(glm::sign(d) + 2e-2 * layer.largestDiameter() / kMoonRadius * randomDirection(random));
+      if (i % 3 == 0)
+        d = glm::normalize(glm::sign(d) + 2e-2 * layer.largestDiameter() / kMoonRadius * randomDirection(random));
       if (i % 3 == 1) d = glm::normalize(glm::dvec3(1, 1, 0.02 * d.z));
       gather(layer, d * kMoonRadius, layer.largestDiameter() * 2, features);
       for (std::size_t a = 0; a < features.size(); ++a) {
@@ -47,7 +48,8 @@ TEST(FeatureLayers, NoTwoBowlsOfALayerOverlapAndAtMostFourFeaturesTouchAPoint) {
         }
       }
       for (int k = 0; k < 40; ++k) {
-        const glm::dvec3 p = glm::normalize(d * kMoonRadius + layer.largestDiameter() * randomDirection(random)) * kMoonRadius;
+        const glm::dvec3 p =
+            glm::normalize(d * kMoonRadius + layer.largestDiameter() * randomDirection(random)) * kMoonRadius;
         std::size_t touching = 0;
         for (const Feature& f : features) touching += glm::distance(centerOf(f), p) < f.heightReach;
         most = std::max(most, touching);
@@ -111,8 +113,10 @@ TEST(FeatureLayers, FreshCratersHaveThePublishedDepths) {
   EXPECT_NEAR(freshCrater(400).depth / 400, 0.19, 0.015);
   EXPECT_NEAR(freshCrater(4000).depth / 4000, 0.20, 0.01);
   for (const double diameter : {30.0, 90.0, 200.0}) {
-    EXPECT_NEAR(freshCrater(diameter * 1000).depth, 1044 * std::pow(diameter, 0.301), 0.04 * 1044 * std::pow(diameter, 0.301));
-    EXPECT_NEAR(freshCrater(diameter * 1000).rim, 236 * std::pow(diameter, 0.399), 0.05 * 236 * std::pow(diameter, 0.399));
+    EXPECT_NEAR(freshCrater(diameter * 1000).depth, 1044 * std::pow(diameter, 0.301),
+                0.04 * 1044 * std::pow(diameter, 0.301));
+    EXPECT_NEAR(freshCrater(diameter * 1000).rim, 236 * std::pow(diameter, 0.399),
+                0.05 * 236 * std::pow(diameter, 0.399));
   }
 }
 

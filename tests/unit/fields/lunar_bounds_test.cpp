@@ -1,4 +1,5 @@
-// The proven bounds against searches for violations: random places, then climbing towards the worst. Each prints how near it came.
+// The proven bounds against searches for violations: random places, then climbing towards the worst. Each prints how
+// near it came.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +23,8 @@ double climb(std::mt19937_64& random, int points, int rounds, double reachMeters
   for (int round = 0; round < rounds; ++round) {
     Directions next;
     const double reach = reachMeters / kMoonRadius * std::pow(0.75, round);
-    for (int i = 0; i < points; ++i) next.add(glm::normalize(best.at(static_cast<std::size_t>(i)) + reach * randomDirection(random)));
+    for (int i = 0; i < points; ++i)
+      next.add(glm::normalize(best.at(static_cast<std::size_t>(i)) + reach * randomDirection(random)));
     const std::vector<double> tried = score(next);
     for (std::size_t i = 0; i < tried.size(); ++i) {
       if (tried[i] <= value[i]) continue;
@@ -49,7 +51,8 @@ TEST(LunarBounds, NothingLeftOutMovesTheGroundByMoreThanStated) {
       }
       return difference;
     });
-    std::printf("level %2d: left out up to %.4g m, stated %.4g m (%.0f %%)\n", level, worst, bound, 100 * worst / bound);
+    std::printf("level %2d: left out up to %.4g m, stated %.4g m (%.0f %%)\n", level, worst, bound,
+                100 * worst / bound);
     EXPECT_LE(worst, bound) << "level " << level;
     EXPECT_GT(worst, 0.02 * bound) << "level " << level;
   }
@@ -85,10 +88,12 @@ TEST(LunarBounds, TheBilinearSurfaceIsAsNearAsStated) {
       const std::vector<double>& h = corners.heightMeters;
       for (std::size_t k = 0; k < 4096; ++k) {
         const std::size_t at = k / 64 * 65 + k % 64;
-        worst = std::max(worst, std::fabs(middle.heightMeters[k] - 0.25 * (h[at] + h[at + 1] + h[at + 65] + h[at + 66])));
+        worst =
+            std::max(worst, std::fabs(middle.heightMeters[k] - 0.25 * (h[at] + h[at + 1] + h[at + 65] + h[at + 66])));
       }
     }
-    std::printf("level %2d: bilinear error up to %.4g m, stated %.4g m (%.0f %%)\n", level, worst, bound, 100 * worst / bound);
+    std::printf("level %2d: bilinear error up to %.4g m, stated %.4g m (%.0f %%)\n", level, worst, bound,
+                100 * worst / bound);
     EXPECT_LE(worst, bound) << "level " << level;
   }
 }
