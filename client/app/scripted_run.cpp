@@ -41,7 +41,7 @@ class ScriptedRun {
   Result<FlightPlan> plan();
   Done flyPlan(const FlightPlan& plan);
   Done settle(const ViewSession::View& view, bool wholly);
-  Done drawFrame(const ViewSession::View& view);
+  void drawFrame(const ViewSession::View& view);
   Done finishPoint(const PlannedFrame& frame, bool aboveGround);
   Done capture(const std::string& file);
   Done writeResults();
@@ -114,7 +114,7 @@ Done ScriptedRun::settle(const ViewSession::View& view, bool wholly) {
   }
 }
 
-Done ScriptedRun::drawFrame(const ViewSession::View& view) {
+void ScriptedRun::drawFrame(const ViewSession::View& view) {
   const auto begin = Clock::now();
   const UpdateReport report = session_->update(view, options_.settle ? kUnlimitedUpload : UploadBudget{});
   drawn_ = session_->draw();
@@ -142,7 +142,6 @@ Done ScriptedRun::drawFrame(const ViewSession::View& view) {
     state.firstViewComplete = firstFullView_;
     hud_->draw(state, true, view.widthPixels, view.heightPixels);
   }
-  return true;
 }
 
 Done ScriptedRun::capture(const std::string& file) {
@@ -186,7 +185,7 @@ Done ScriptedRun::flyPlan(const FlightPlan& plan) {
     // A flight begins with a full view, so that what it shows does not depend on how fast the first tiles came.
     if (options_.settle || (i == 0 && plan.points > 0))
       if (const Done settled = settle(view, options_.settle); !settled) return settled.error();
-    if (const Done drawn = drawFrame(view); !drawn) return drawn.error();
+    drawFrame(view);
     record_.points.push_back({frame.seconds, session_->pose()});
     if (frame.point >= 0)
       if (const Done finished = finishPoint(frame, plan.aboveGround); !finished) return finished.error();

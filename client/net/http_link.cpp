@@ -80,8 +80,12 @@ class BeastLink final : public HttpLink, public std::enable_shared_from_this<Bea
 
   bool cheapToFinish() const override {
     if (!done_ || !sent_ || !parser_->is_header_done()) return false;
-    const auto rest = parser_->content_length_remaining();
-    return rest && *rest <= kCheapToFinishBytes;
+    const auto& message = parser_->get();
+    const auto field = message[http::field::content_length];
+    std::uint64_t length = 0;
+    const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), length);
+    return failure == std::errc() &&
+           length - std::min<std::uint64_t>(length, message.body().size()) <= kCheapToFinishBytes;
   }
 
   bool used() const override { return used_; }

@@ -6,8 +6,8 @@
 namespace terrane {
 namespace {
 
-/// Directions of a place on the sphere. Taken from longitude and latitude, never from the position, so that a pole has a north
-/// (its meridian's) and the planet's centre an up.
+/// Directions of a place on the sphere. Taken from longitude and latitude, never from the position, so that a pole has
+/// a north (its meridian's) and the planet's centre an up.
 struct LocalFrame {
   glm::dvec3 up, north, east;
 };
@@ -15,9 +15,8 @@ struct LocalFrame {
 LocalFrame localFrame(double longitude, double latitude) noexcept {
   const double cosLon = std::cos(longitude), sinLon = std::sin(longitude);
   const double cosLat = std::cos(latitude), sinLat = std::sin(latitude);
-  return {{cosLat * cosLon, cosLat * sinLon, sinLat},
-          {-sinLat * cosLon, -sinLat * sinLon, cosLat},
-          {-sinLon, cosLon, 0.0}};
+  return {
+      {cosLat * cosLon, cosLat * sinLon, sinLat}, {-sinLat * cosLon, -sinLat * sinLon, cosLat}, {-sinLon, cosLon, 0.0}};
 }
 
 /// Below this sine of the angle to the vertical a view direction no longer tells its heading well: the up vector does.

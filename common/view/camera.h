@@ -1,7 +1,7 @@
 #pragma once
 // A camera over a body, in double, body frame (+Z north pole, +X longitude 0, east positive, right-handed, metres).
-// Heading runs from north clockwise, pitch 0 is level and -90 degrees straight down; radians in here, degrees at the command line.
-// Values are plain data; functions are thread-safe.
+// Heading runs from north clockwise, pitch 0 is level and -90 degrees straight down; radians in here, degrees at the
+// command line. Values are plain data; functions are thread-safe.
 
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
@@ -28,7 +28,8 @@ struct ViewPose {
   double heading = 0, pitch = 0;
 };
 
-/// Every finite pose gives a finite orthonormal camera, at the poles too (heading then counts from the meridian's direction).
+/// Every finite pose gives a finite orthonormal camera, at the poles too (heading then counts from the meridian's
+/// direction).
 Camera cameraFromPose(const ViewPose& pose, double radiusMeters, double verticalFieldOfView, int widthPixels,
                       int heightPixels) noexcept;
 /// The inverse. At a pitch of +-90 degrees the heading is taken from the up vector.

@@ -7,17 +7,17 @@
 namespace terrane {
 namespace {
 
-/// Rounding of a dot product along an axis, per unit of (axis length x distance); 45 u, where 4 u is what the arithmetic here can
-/// lose and the rest allows for the rounding of hull and camera themselves.
+/// Rounding of a dot product along an axis, per unit of (axis length x distance); 45 u, where 4 u is what the
+/// arithmetic here can lose and the rest allows for the rounding of hull and camera themselves.
 constexpr double kRounding = 1e-14;
-/// A corner ray counts as parallel to an axis below this share of the axis' scale: an axis made as a cross product with that ray is
-/// perpendicular to it only up to rounding.
+/// A corner ray counts as parallel to an axis below this share of the axis' scale: an axis made as a cross product with
+/// that ray is perpendicular to it only up to rounding.
 constexpr double kParallel = 1e-15;
 
 double sumOfMagnitudes(const glm::dvec3& v) noexcept { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
-/// Triangles that cover the hull's faces, hull corner indices. A side face lies in a plane and needs one; the four corners of a cap
-/// need not, and both diagonals' triangles are tried, whichever of them the hull has.
+/// Triangles that cover the hull's faces, hull corner indices. A side face lies in a plane and needs one; the four
+/// corners of a cap need not, and both diagonals' triangles are tried, whichever of them the hull has.
 constexpr std::array<std::array<int, 3>, 12> kFaces{{{0, 1, 4},
                                                      {1, 3, 5},
                                                      {3, 2, 7},
@@ -76,8 +76,9 @@ bool Frustum::contains(const glm::dvec3& pointBody) const noexcept {
   return true;
 }
 
-/// True when the axis proves hull (camera-relative) and frustum apart. The frustum is its near corners plus all sums of its corner
-/// rays: along an axis it is bounded on one side exactly when no ray points there. axisScale: what the axis' rounding is relative to.
+/// True when the axis proves hull (camera-relative) and frustum apart. The frustum is its near corners plus all sums of
+/// its corner rays: along an axis it is bounded on one side exactly when no ray points there. axisScale: what the axis'
+/// rounding is relative to.
 bool Frustum::separated(const Hull& hull, const glm::dvec3& axis, double axisScale, double extent) const noexcept {
   double lowestRay = glm::dot(axis, edgeDirections_[0]), highestRay = lowestRay;
   for (std::size_t i = 1; i < 4; ++i) {

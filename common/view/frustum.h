@@ -1,6 +1,6 @@
 #pragma once
-// The view frustum as five planes through (or in front of) the camera, and an almost exact test of a tile's hull against it.
-// All arithmetic is relative to the camera, in double. Thread-safe.
+// The view frustum as five planes through (or in front of) the camera, and an almost exact test of a tile's hull
+// against it. All arithmetic is relative to the camera, in double. Thread-safe.
 
 #include <array>
 #include <glm/vec3.hpp>
@@ -14,8 +14,8 @@ class Frustum {
  public:
   explicit Frustum(const Camera& camera) noexcept;
 
-  /// False only if no point of the hull is inside the frustum (never a false negative); separating axes over both bodies' faces and
-  /// edges, so that false positives are rare.
+  /// False only if no point of the hull is inside the frustum (never a false negative); separating axes over both
+  /// bodies' faces and edges, so that false positives are rare.
   bool mayContain(const std::array<glm::dvec3, 8>& hullBody) const noexcept;
   bool contains(const glm::dvec3& pointBody) const noexcept;
 

@@ -27,7 +27,8 @@ bool Horizon::hides(const glm::dvec3& pointBody) const noexcept {
   // Subtracted in metres first: near the camera that is exact, and the scaling then only rounds once.
   const glm::dvec3 toPoint = (pointBody - cameraBody_) * inverseRadius_;
   const double inward = -glm::dot(toPoint, cameraScaled_);
-  // Behind the plane of the horizon circle, and inside the cone that touches the sphere there. A NaN fails either comparison.
+  // Behind the plane of the horizon circle, and inside the cone that touches the sphere there. A NaN fails either
+  // comparison.
   return inward > horizonDistanceSquared_ && inward * inward > horizonDistanceSquared_ * glm::dot(toPoint, toPoint);
 }
 

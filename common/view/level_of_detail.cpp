@@ -12,7 +12,8 @@ double distanceMeters(const OrientedBox& box, const glm::dvec3& pointBody) noexc
   for (std::size_t i = 0; i < 3; ++i) {
     const double halfLength = glm::length(box.halfAxes[i]);
     // A flat box's third direction is the normal of the other two.
-    const glm::dvec3 along = halfLength > 0 ? box.halfAxes[i] : glm::cross(box.halfAxes[(i + 1) % 3], box.halfAxes[(i + 2) % 3]);
+    const glm::dvec3 along =
+        halfLength > 0 ? box.halfAxes[i] : glm::cross(box.halfAxes[(i + 1) % 3], box.halfAxes[(i + 2) % 3]);
     const double alongLength = glm::length(along);
     if (!(alongLength > 0)) continue;
     const double excess = std::abs(glm::dot(toPoint, along)) / alongLength - halfLength;

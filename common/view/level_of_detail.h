@@ -1,5 +1,6 @@
 #pragma once
-// Screen-space error: how many pixels a tile's geometric error covers, seen from the nearest point of its bounds. Thread-safe.
+// Screen-space error: how many pixels a tile's geometric error covers, seen from the nearest point of its bounds.
+// Thread-safe.
 
 #include "common/tiling/tile_bounds.h"
 #include "common/view/camera.h"

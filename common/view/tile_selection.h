@@ -1,10 +1,15 @@
 #pragma once
-// Which tiles to draw and which to ask for, as one pure function of (camera, resident tiles, settings). Hysteresis has no place
-// here: it governs requests and residency (client/tiles). Thread-safe.
+// Which tiles to draw and which to ask for, as one pure function of (camera, resident tiles, settings). Hysteresis has
+// no place here: it governs requests and residency (client/tiles). Thread-safe.
 //
-// Tiles are visited level by level from the six faces. A tile is refined when its screen-space error is too large, it has children,
-// all its visible children are resident (for the drawn set), and no neighbour over an edge or corner would end up more than one
-// level coarser (the drawn set is 2:1 balanced). Tiles outside the frustum or below the horizon are skipped.
+// Tiles are visited level by level from the six faces. A tile is refined when its screen-space error is too large, it
+// has children, all its visible children are resident (for the drawn set), and no neighbour over an edge or corner
+// would end up more than one level coarser (the drawn set is 2:1 balanced). Tiles outside the frustum or below the
+// horizon are skipped.
+//
+// Children of a known tile are culled by its proven subtree heights, so nothing visible is ever left out. Below a tile
+// that is not known yet, selection guesses from the nearest known ancestor's ground: so that a chain of ancestors can
+// be asked for in one go, without asking for all that might be there. As tiles arrive, guesses give way to proofs.
 
 #include <functional>
 #include <optional>
@@ -23,17 +28,21 @@ struct SelectionBody {
   int maxLevel = 0;
   HeightRange heights;              ///< proven range of the whole body
   double occluderRadiusMeters = 0;  ///< lowestSurfaceRadiusMeters(...)
-  /// geometricErrorMeters[level], 0..maxLevel, strictly decreasing: how far a tile's mesh may be from the finest surface.
+  /// geometricErrorMeters[level], 0..maxLevel, strictly decreasing: how far a tile's mesh may be from the finest
+  /// surface.
   std::vector<double> geometricErrorMeters;
 };
 
-/// What is known of a resident tile. subtreeHeights also bounds every descendant; it is proven, and therefore wide. A tile that is to
-/// be drawn itself is culled by ownHeights, its mesh's, where that is known.
+/// What is known of a tile that was there at some time. subtreeHeights also bounds every descendant; it is proven, and
+/// therefore wide. A tile that is to be drawn itself is culled by ownHeights, its mesh's, where that is given. A client
+/// that drops a mesh does well to remember these few bytes (with drawable = false): the tile is then not asked for
+/// again only to learn that it is out of view.
 struct ResidentTile {
   HeightRange subtreeHeights;
   std::optional<HeightRange> ownHeights = std::nullopt;
+  bool drawable = true;
 };
-/// Returns null for a tile that is not resident. Called from the calling thread only.
+/// Returns null for a tile that nothing is known of. Called from the calling thread only.
 using ResidentLookup = std::function<const ResidentTile*(const FacePath&)>;
 
 struct SelectionSettings {

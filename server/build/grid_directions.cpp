@@ -42,7 +42,8 @@ void gridDirections(const FacePath& path, int cellsPerEdge, GridDirections& out)
   const FaceAxes axes = cubeFaceAxes(path.face());
   const double* alongU = tangentsU.data();
   for (std::size_t j = 0; j < side; ++j) {
-    // The operations of cubeDirection, in its order: the bits of a shared vertex must not depend on the face it is computed from.
+    // The operations of cubeDirection, in its order: the bits of a shared vertex must not depend on the face it is
+    // computed from.
     const glm::dvec3 ofRow = axes.v * tangentsV[j];
     double *x = out.x.data() + j * side, *y = out.y.data() + j * side, *z = out.z.data() + j * side;
     for (std::size_t i = 0; i < side; ++i) {

@@ -8,16 +8,17 @@
 namespace terrane {
 namespace {
 
-/// Heights of neighbouring vertices differ by at most this many times their distance (79 degrees; tile_builder_test holds the lunar field
-/// to it). It only enters the sag below, in second order.
+/// Heights of neighbouring vertices differ by at most this many times their distance (79 degrees; tile_builder_test
+/// holds the lunar field to it). It only enters the sag below, in second order.
 constexpr double kSteepestSlope = 5.0;
 
 double cellMeters(double radiusMeters, int level, int cellsPerEdge) noexcept {
   return nominalTileWidthMeters(radiusMeters, level) / cellsPerEdge;
 }
 
-/// How far a straight edge may lie below the surface that interpolates its ends' heights over a sphere: c^2 / 8 r for level ends, and
-/// dr^2 / 4 r more where they differ by dr (in the middle direction a chord is at the harmonic mean of its ends' radii).
+/// How far a straight edge may lie below the surface that interpolates its ends' heights over a sphere: c^2 / 8 r for
+/// level ends, and dr^2 / 4 r more where they differ by dr (in the middle direction a chord is at the harmonic mean of
+/// its ends' radii).
 double sagMeters(double cell, double lowestRadius) noexcept {
   return cell * cell * (1.0 + 2.0 * kSteepestSlope * kSteepestSlope) / (8.0 * lowestRadius);
 }
@@ -28,7 +29,8 @@ double skirtMarginMeters(double radiusMeters, int level) noexcept {
   return 3.0 * 0.8660254037844387 * stepMeters(stepExponent(radiusMeters, level));
 }
 
-std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, int cellsPerEdge, int maxLevel) {
+std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, int cellsPerEdge,
+                                           int maxLevel) {
   const double finest = 2.0 * cellMeters(radiusMeters, maxLevel, cellsPerEdge);
   const HeightRange heights = field.heightRange();
   std::vector<LevelAccuracy> levels;
@@ -37,12 +39,13 @@ std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radi
     LevelAccuracy accuracy;
     accuracy.minWavelengthMeters = 2.0 * cell;
     accuracy.geometricErrorMeters = kErrorPerCell * cell;
-    accuracy.skirtSlackMeters = skirtMarginMeters(radiusMeters, level) + sagMeters(cell, radiusMeters + heights.minMeters);
+    accuracy.skirtSlackMeters =
+        skirtMarginMeters(radiusMeters, level) + sagMeters(cell, radiusMeters + heights.minMeters);
     if (level < maxLevel) {
       // No two heights differ by more than the field's whole range: at the coarsest levels that is the better bound.
       accuracy.subtreeSlackMeters =
-          std::min(heights.maxMeters - heights.minMeters, field.omittedAmplitudeMeters(2.0 * cell, finest) +
-                                                              field.interpolationErrorMeters(2.0 * cell, cell));
+          std::min(heights.maxMeters - heights.minMeters,
+                   field.omittedAmplitudeMeters(2.0 * cell, finest) + field.interpolationErrorMeters(2.0 * cell, cell));
     }
     levels.push_back(accuracy);
   }

@@ -1,7 +1,7 @@
 #pragma once
-// What each level of a body leaves out, and what follows from it: how far descendants may reach beyond a tile's own heights, and the
-// geometric error that selection works with. Metres, along the vertical. From the field's proven bounds; computed once for a
-// body. Thread-safe.
+// What each level of a body leaves out, and what follows from it: how far descendants may reach beyond a tile's own
+// heights, and the geometric error that selection works with. Metres, along the vertical. From the field's proven
+// bounds; computed once for a body. Thread-safe.
 
 #include <vector>
 
@@ -16,17 +16,19 @@ struct LevelAccuracy {
   double geometricErrorMeters = 0;  ///< estimate, strictly decreasing with the level; see kErrorPerCell
 };
 
-/// Geometric error of a level, in widths of its cells. The deepest thing that a level leaves out is a fresh simple crater as wide as the
-/// shortest wavelength it shows, two cells; its depth is 0.196 of its width (Pike 1977, "Size-dependence in the shape of fresh impact
-/// craters on the moon"): 0.4 cells. At the default tolerance of 2 pixels a cell then covers up to 5 pixels. The sum of all
-/// octaves' worst cases, which subtreeSlackMeters is, would be several times that, and never seen.
+/// Geometric error of a level, in widths of its cells. The deepest thing that a level leaves out is a fresh simple
+/// crater as wide as the shortest wavelength it shows, two cells; its depth is 0.196 of its width (Pike 1977,
+/// "Size-dependence in the shape of fresh impact craters on the moon"): 0.4 cells. At the default tolerance of 2 pixels
+/// a cell then covers up to 5 pixels. The sum of all octaves' worst cases, which subtreeSlackMeters is, would be
+/// several times that, and never seen.
 inline constexpr double kErrorPerCell = 0.4;
 
 /// Levels 0 .. maxLevel.
-std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, int cellsPerEdge, int maxLevel);
+std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, int cellsPerEdge,
+                                           int maxLevel);
 
-/// How far a skirt hangs below the lowest of the edges that may meet it, so that the lattice's rounding opens nothing: half a step in each
-/// axis for a vertex of the tile, twice that for one of a coarser neighbour.
+/// How far a skirt hangs below the lowest of the edges that may meet it, so that the lattice's rounding opens nothing:
+/// half a step in each axis for a vertex of the tile, twice that for one of a coarser neighbour.
 double skirtMarginMeters(double radiusMeters, int level) noexcept;
 
 }  // namespace terrane

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include "common/numerics/strict_math.h"
@@ -72,7 +73,8 @@ void placeVertices(const BuildScratch& memory, const TileTopology& topology, dou
 }
 
 /// Offsets from the componentwise smallest point, which becomes the origin. False if one does not fit into 16 bits.
-bool offsetsFromOrigin(const std::vector<LatticePoint>& lattice, LatticePoint& origin, std::vector<std::uint16_t>& offsets) {
+bool offsetsFromOrigin(const std::vector<LatticePoint>& lattice, LatticePoint& origin,
+                       std::vector<std::uint16_t>& offsets) {
   LatticePoint lowest = lattice.front(), highest = lowest;
   for (const LatticePoint& p : lattice) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -90,8 +92,10 @@ bool offsetsFromOrigin(const std::vector<LatticePoint>& lattice, LatticePoint& o
   return true;
 }
 
-/// Normal of the surface (R + h) d, whose tangents are those of the sphere lifted by the gradient g at radius R: (1 + h/R) d - g.
-void writeNormals(const GridDirections& at, const SurfaceSamples& samples, double radiusMeters, std::vector<float>& out) {
+/// Normal of the surface (R + h) d, whose tangents are those of the sphere lifted by the gradient g at radius R: (1 +
+/// h/R) d - g.
+void writeNormals(const GridDirections& at, const SurfaceSamples& samples, double radiusMeters,
+                  std::vector<float>& out) {
   const std::size_t count = samples.heightMeters.size();
   for (std::size_t i = 0; i < count; ++i) {
     const double radial = 1.0 + samples.heightMeters[i] / radiusMeters;
@@ -150,16 +154,21 @@ TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(s
   state.levels = levelAccuracies(*state.field, radius, wire.cellsPerEdge, deepest);
 
   state.info.name = state.body.name;
-  state.info.revision = tileRevision(state.body, state.field->identity(), wire, "1.5.5");
   state.info.schemes = state.body.schemes;
   state.info.cellsPerEdge = wire.cellsPerEdge;
   SelectionBody& selection = state.info.selection;
   selection.scheme = Scheme::Cube;
   selection.radiusMeters = radius;
   selection.maxLevel = deepest;
-  selection.heights = {state.fieldHeights.minMeters - state.levels.front().skirtSlackMeters, state.fieldHeights.maxMeters};
+  selection.heights = {state.fieldHeights.minMeters - state.levels.front().skirtSlackMeters,
+                       state.fieldHeights.maxMeters};
   selection.occluderRadiusMeters = lowestSurfaceRadiusMeters(radius, state.fieldHeights.minMeters, wire.cellsPerEdge);
   for (const LevelAccuracy& level : state.levels) selection.geometricErrorMeters.push_back(level.geometricErrorMeters);
+
+  const Result<BuiltTile> probe = build(FacePath::wholeFace(Scheme::Cube, 0));
+  state.info.revision =
+      tileRevision(state.body, state.field->identity(), wire,
+                   probe.has_value() ? std::span<const std::uint8_t>(probe->glb) : std::span<const std::uint8_t>());
 }
 
 TileBuilder::~TileBuilder() = default;
@@ -169,7 +178,8 @@ const Body& TileBuilder::body() const noexcept { return state_->body; }
 const BodyInfo& TileBuilder::info() const noexcept { return state_->info; }
 
 Result<void> TileBuilder::State::checkPath(const FacePath& path) const {
-  if (path.scheme() != Scheme::Cube || std::find(body.schemes.begin(), body.schemes.end(), path.scheme()) == body.schemes.end())
+  if (path.scheme() != Scheme::Cube ||
+      std::find(body.schemes.begin(), body.schemes.end(), path.scheme()) == body.schemes.end())
     return makeError(ErrorKind::InvalidArgument, "scheme",
                      body.name + " has no tiles of the scheme " + std::string(schemeName(path.scheme())));
   if (path.level() > info.selection.maxLevel)
@@ -187,14 +197,15 @@ void TileBuilder::State::describe(const FacePath& path, const BuildScratch& memo
   for (std::size_t k = 0; k < memory.skirtHeights.size(); ++k)
     deepest = std::max(deepest, memory.samples.heightMeters[topology->skirtAnchors[k]] - memory.skirtHeights[k]);
 
-  // Of descendants: no terrain leaves the slack, nor what the field can give at all; a finer tile's skirts reach below terrain of its own
-  // level and the two beside it, none of them coarser than this tile's.
+  // Of descendants: no terrain leaves the slack, nor what the field can give at all; a finer tile's skirts reach below
+  // terrain of its own level and the two beside it, none of them coarser than this tile's.
   const double lowest = std::max(terrain.minMeters - accuracy.subtreeSlackMeters, fieldHeights.minMeters);
   const double highest = std::min(terrain.maxMeters + accuracy.subtreeSlackMeters, fieldHeights.maxMeters);
   metadata.subtreeHeights = {std::min(metadata.heights.minMeters, lowest - accuracy.skirtSlackMeters),
                              std::max(metadata.heights.maxMeters, highest)};
 
-  const TileBounds bounds = tileBounds(path, body.radiusMeters, metadata.subtreeHeights, info.selection.occluderRadiusMeters);
+  const TileBounds bounds =
+      tileBounds(path, body.radiusMeters, metadata.subtreeHeights, info.selection.occluderRadiusMeters);
   metadata.path = path;
   metadata.geometricErrorMeters = accuracy.geometricErrorMeters;
   metadata.sphere = bounds.sphere;
@@ -210,7 +221,8 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   const LevelAccuracy& accuracy = levels[static_cast<std::size_t>(path.level())];
   gridDirections(path, wire.cellsPerEdge, memory.directions);
   const auto side = static_cast<std::size_t>(wire.cellsPerEdge) + 1;
-  const SampleBatch batch{memory.directions.x.data(), memory.directions.y.data(), memory.directions.z.data(), side, side};
+  const SampleBatch batch{memory.directions.x.data(), memory.directions.y.data(), memory.directions.z.data(), side,
+                          side};
   field->evaluate(batch, accuracy.minWavelengthMeters, memory.samples);
   skirtHeights({*field, levels, *topology, radius, path, memory.directions, memory.samples.heightMeters}, memory.skirt,
                memory.skirtHeights);

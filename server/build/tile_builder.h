@@ -1,6 +1,7 @@
 #pragma once
-// Builds the tiles of one body: grid directions -> field -> lattice -> mesh with skirts -> Draco -> GLB. A tile is a pure function of
-// (body, path, wire settings): no clock, no thread order. build is const and thread-safe; each thread keeps its own scratch.
+// Builds the tiles of one body: grid directions -> field -> lattice -> mesh with skirts -> Draco -> GLB. A tile is a
+// pure function of (body, path, wire settings): no clock, no thread order. build is const and thread-safe; each thread
+// keeps its own scratch.
 
 #include <chrono>
 #include <cstdint>
@@ -17,7 +18,8 @@
 
 namespace terrane {
 
-/// Raise when the bytes of any tile change for reasons that no setting shows: the golden hashes refuse a change without it.
+/// Raise when the bytes of any tile change for reasons that no setting shows: the golden hashes refuse a change without
+/// it.
 inline constexpr int kGeneratorVersion = 1;
 
 struct WireSettings {

@@ -18,10 +18,10 @@ void addGridTriangles(std::uint32_t cells, std::vector<std::uint32_t>& triangles
 std::vector<std::uint32_t> boundaryInSkirtOrder(std::uint32_t cells) {
   const std::uint32_t side = cells + 1;
   std::vector<std::uint32_t> anchors;
-  for (std::uint32_t k = 0; k < side; ++k) anchors.push_back(k);                           // VMin, towards +u
-  for (std::uint32_t k = 0; k < side; ++k) anchors.push_back(k * side + cells);            // UMax, towards +v
-  for (std::uint32_t k = 0; k < side; ++k) anchors.push_back(cells * side + cells - k);    // VMax, towards -u
-  for (std::uint32_t k = 0; k < side; ++k) anchors.push_back((cells - k) * side);          // UMin, towards -v
+  for (std::uint32_t k = 0; k < side; ++k) anchors.push_back(k);                         // VMin, towards +u
+  for (std::uint32_t k = 0; k < side; ++k) anchors.push_back(k * side + cells);          // UMax, towards +v
+  for (std::uint32_t k = 0; k < side; ++k) anchors.push_back(cells * side + cells - k);  // VMax, towards -u
+  for (std::uint32_t k = 0; k < side; ++k) anchors.push_back((cells - k) * side);        // UMin, towards -v
   return anchors;
 }
 

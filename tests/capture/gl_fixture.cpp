@@ -49,7 +49,7 @@ std::shared_ptr<const Tile> TileSource::tile(const FacePath& path) {
   std::shared_ptr<const Tile>& slot = tiles_[path];
   if (!slot) {
     slot = std::make_shared<const Tile>(require(builder_.buildMesh(path)));
-    resident_[path] = ResidentTile{slot->metadata.subtreeHeights};
+    resident_[path] = ResidentTile{slot->metadata.subtreeHeights, slot->metadata.heights};
   }
   return slot;
 }

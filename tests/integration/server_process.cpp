@@ -8,6 +8,9 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
 #include <thread>
 
 extern char** environ;
@@ -118,6 +121,12 @@ ServerProcess::~ServerProcess() {
 }
 
 void ServerProcess::signal(int number) const { kill(pid_, number); }
+
+int ServerProcess::openFiles() const {
+  std::error_code failure;
+  const std::filesystem::directory_iterator files("/proc/" + std::to_string(pid_) + "/fd", failure);
+  return failure ? 0 : static_cast<int>(std::distance(begin(files), end(files)));
+}
 
 FinishedProcess ServerProcess::wait() {
   const FinishedProcess result = finish({pid_, output_, error_});

@@ -31,6 +31,8 @@ class ServerProcess {
   const std::string& readyLine() const { return readyLine_; }
   const std::string& url() const { return url_; }  ///< the first listener's
   void signal(int number) const;
+  /// File descriptors that it has open.
+  int openFiles() const;
   /// Waits for its end, at most a minute.
   FinishedProcess wait();
 

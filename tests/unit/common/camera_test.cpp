@@ -18,7 +18,8 @@ constexpr unsigned kSeed = 20261122;
 Camera moonCamera(const ViewPose& pose) { return cameraFromPose(pose, kMoon, kField, 1280, 720); }
 
 void expectNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
-  EXPECT_NEAR(glm::length(a - b), 0.0, tolerance) << a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z;
+  EXPECT_NEAR(glm::length(a - b), 0.0, tolerance)
+      << a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z;
 }
 
 void expectOrthonormal(const Camera& camera) {
@@ -67,7 +68,8 @@ TEST(Camera, ReadsItsPoseBack) {
   for (int i = 0; i < 2000; ++i) {
     const double poles[] = {kPi / 2, -kPi / 2, unit(random) * kPi / 2, unit(random) * kPi / 2};
     const double pitches[] = {-kPi / 2, kPi / 2, 0.0, unit(random) * kPi / 2, unit(random) * kPi / 2};
-    const ViewPose pose{unit(random) * kPi, poles[i % 4], std::pow(10.0, 4 * unit(random) + 3), unit(random) * kPi, pitches[i % 5]};
+    const ViewPose pose{unit(random) * kPi, poles[i % 4], std::pow(10.0, 4 * unit(random) + 3), unit(random) * kPi,
+                        pitches[i % 5]};
     const ViewPose read = poseFromCamera(moonCamera(pose));
     EXPECT_NEAR(read.longitude, pose.longitude, 1e-12);
     EXPECT_NEAR(read.latitude, pose.latitude, 1e-12);
@@ -88,7 +90,8 @@ TEST(Camera, AtTheCentreOfThePlanetIsStillACamera) {
   expectNear(camera.positionBody, glm::dvec3(0.0), 0);
   expectOrthonormal(camera);
   const ViewPose read = poseFromCamera(camera);
-  EXPECT_TRUE(std::isfinite(read.longitude) && std::isfinite(read.latitude) && std::isfinite(read.heading) && std::isfinite(read.pitch));
+  EXPECT_TRUE(std::isfinite(read.longitude) && std::isfinite(read.latitude) && std::isfinite(read.heading) &&
+              std::isfinite(read.pitch));
   EXPECT_EQ(read.altitudeMeters, -kMoon);
 }
 

@@ -27,15 +27,17 @@ struct Views {
 
   double between(double low, double high) { return low + (high - low) * unit(random); }
   Camera camera() {
-    const ViewPose pose{between(-kPi, kPi), std::asin(between(-1, 1)), std::pow(10.0, between(-0.7, 7)), between(-kPi, kPi),
-                        between(-kPi / 2, kPi / 2)};
+    const ViewPose pose{between(-kPi, kPi), std::asin(between(-1, 1)), std::pow(10.0, between(-0.7, 7)),
+                        between(-kPi, kPi), between(-kPi / 2, kPi / 2)};
     return cameraFromPose(pose, kMoon, between(0.3, 1.8), 1280, 720);
   }
   /// A tile somewhere near the camera, of about the size that it would look at.
   Hull tileNear(const Camera& camera) {
     const int level = static_cast<int>(between(0, 24));
-    const double distance = std::pow(10.0, between(-0.5, 0.7)) * std::max(camera.altitudeMeters, kMoon / std::ldexp(1.0, level));
-    const glm::dvec3 place = camera.positionBody + distance * glm::dvec3(between(-1, 1), between(-1, 1), between(-1, 1));
+    const double distance =
+        std::pow(10.0, between(-0.5, 0.7)) * std::max(camera.altitudeMeters, kMoon / std::ldexp(1.0, level));
+    const glm::dvec3 place =
+        camera.positionBody + distance * glm::dvec3(between(-1, 1), between(-1, 1), between(-1, 1));
     const double relief = between(0, 0.3) * kMoon / std::ldexp(1.0, level + 1);
     return tileBounds(tileAt(place, level), kMoon, {-relief, relief}, kMoon * 0.98).hull;
   }
@@ -51,11 +53,12 @@ struct Views {
   }
 };
 
-/// The oracle: the hull's surface, cut by the view's planes one after another (Sutherland and Hodgman 1974). The frustum is unbounded and
-/// the hull is not, so they meet exactly if some piece of that surface is left.
+/// The oracle: the hull's surface, cut by the view's planes one after another (Sutherland and Hodgman 1974). The
+/// frustum is unbounded and the hull is not, so they meet exactly if some piece of that surface is left.
 bool surfaceReachesInto(const Camera& camera, const Hull& hull) {
-  constexpr int kTriangles[][3] = {{0, 1, 4}, {1, 5, 4}, {1, 3, 5}, {3, 7, 5}, {3, 2, 7}, {2, 6, 7}, {2, 0, 6}, {0, 4, 6},
-                                   {4, 5, 7}, {4, 7, 6}, {4, 5, 6}, {5, 7, 6}, {0, 1, 3}, {0, 3, 2}, {0, 1, 2}, {1, 3, 2}};
+  constexpr int kTriangles[][3] = {{0, 1, 4}, {1, 5, 4}, {1, 3, 5}, {3, 7, 5}, {3, 2, 7}, {2, 6, 7},
+                                   {2, 0, 6}, {0, 4, 6}, {4, 5, 7}, {4, 7, 6}, {4, 5, 6}, {5, 7, 6},
+                                   {0, 1, 3}, {0, 3, 2}, {0, 1, 2}, {1, 3, 2}};
   const double top = std::tan(camera.verticalFieldOfView / 2), side = top * camera.widthPixels / camera.heightPixels;
   const glm::dvec3 forward = -camera.backward;
   const glm::dvec3 normals[] = {camera.right + side * forward, side * forward - camera.right, camera.up + top * forward,
@@ -89,7 +92,8 @@ TEST(Frustum, ContainsWhatThePictureShows) {
     const glm::dvec4 clip = reversedInfiniteProjection(camera) * glm::dvec4(seen, 1);
     const double margin = std::min({clip.w - std::abs(clip.x), clip.w - std::abs(clip.y), clip.w - camera.nearMeters});
     if (std::abs(margin) < 1e-6 * clip.w) continue;
-    const glm::dvec3 point = camera.positionBody + camera.right * seen.x + camera.up * seen.y + camera.backward * seen.z;
+    const glm::dvec3 point =
+        camera.positionBody + camera.right * seen.x + camera.up * seen.y + camera.backward * seen.z;
     EXPECT_EQ(frustum.contains(point), margin > 0) << i;
   }
 }
@@ -141,7 +145,8 @@ TEST(Frustum, LeavesOutWhatLiesBehindOrBefore) {
   const glm::dvec3 forward = -camera.backward;
   EXPECT_TRUE(frustum.mayContain(boxAt(camera.positionBody + forward * 10.0, 1)));
   EXPECT_FALSE(frustum.mayContain(boxAt(camera.positionBody - forward * 10.0, 1)));
-  EXPECT_FALSE(frustum.mayContain(boxAt(camera.positionBody + forward * (camera.nearMeters / 2), camera.nearMeters / 10)));
+  EXPECT_FALSE(
+      frustum.mayContain(boxAt(camera.positionBody + forward * (camera.nearMeters / 2), camera.nearMeters / 10)));
   EXPECT_TRUE(frustum.mayContain(boxAt(camera.positionBody + forward * 1e12, 1)));
 }
 

@@ -16,7 +16,8 @@ constexpr unsigned kSeed = 45;
 TEST(Horizon, IsWhereItShouldBeFromOneMetreAndFromOneMillimetre) {
   EXPECT_NEAR(horizonDistanceMeters(kEarth, 1.0), 3569.594, 0.001);
   EXPECT_NEAR(horizonDistanceMeters(kEarth, 1e-3), 112.880, 0.001);
-  // The control: the textbook formula in float is 22 m short from one metre, and sees no horizon at all from a millimetre.
+  // The control: the textbook formula in float is 22 m short from one metre, and sees no horizon at all from a
+  // millimetre.
   const auto textbook = [](float radius, float height) {
     const float distance = radius + height;
     return std::sqrt(distance * distance - radius * radius);
@@ -29,7 +30,8 @@ TEST(Horizon, DistanceIsWithinFourRoundingsFromAMicrometreUp) {
   for (double height = 1e-6; height < 1e12; height *= 3.7) {
     const long double h = height, r = kEarth;
     const long double exact = std::sqrt(h * (2 * r + h));
-    EXPECT_LE(std::abs(static_cast<long double>(horizonDistanceMeters(kEarth, height)) - exact), 4 * 1.11e-16L * exact) << height;
+    EXPECT_LE(std::abs(static_cast<long double>(horizonDistanceMeters(kEarth, height)) - exact), 4 * 1.11e-16L * exact)
+        << height;
   }
   EXPECT_EQ(horizonDistanceMeters(kEarth, 0), 0);
   EXPECT_EQ(horizonDistanceMeters(kEarth, -5), 0);
@@ -58,7 +60,8 @@ TEST(Horizon, HidesExactlyWhatTheSphereStandsBefore) {
     const glm::dvec3 camera = direction() * (kEarth + altitude);
     // Half of the points lie near the horizon circle, where the test can go wrong.
     const double reach = 2 * horizonDistanceMeters(lowest, altitude) / kEarth;
-    const glm::dvec3 around = i % 2 == 0 ? direction() : glm::normalize(glm::normalize(camera) + direction() * std::min(reach, 3.0));
+    const glm::dvec3 around =
+        i % 2 == 0 ? direction() : glm::normalize(glm::normalize(camera) + direction() * std::min(reach, 3.0));
     const glm::dvec3 point = around * (lowest * (1 + 0.01 * unit(random) * unit(random)));
     const Horizon horizon(camera, kEarth, altitude, lowest);
     ASSERT_TRUE(horizon.active());
@@ -97,9 +100,11 @@ TEST(Horizon, HidesNothingFromAtOrInsideTheSphere) {
 TEST(Horizon, NeverHidesAPointThatIsNotFinite) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
   const Horizon horizon({kEarth + 100, 0, 0}, kEarth, 100, kEarth);
-  for (const glm::dvec3& point : {glm::dvec3(kNaN), glm::dvec3(-kEarth, kNaN, 0), glm::dvec3(-kInfinity, 0, 0), glm::dvec3(-1e300, 0, 0)})
+  for (const glm::dvec3& point :
+       {glm::dvec3(kNaN), glm::dvec3(-kEarth, kNaN, 0), glm::dvec3(-kInfinity, 0, 0), glm::dvec3(-1e300, 0, 0)})
     EXPECT_FALSE(horizon.hides(point));
-  for (const double bad : {kNaN, kInfinity}) EXPECT_FALSE(Horizon({bad, 0, 0}, kEarth, bad, kEarth).hides({-kEarth, 0, 0}));
+  for (const double bad : {kNaN, kInfinity})
+    EXPECT_FALSE(Horizon({bad, 0, 0}, kEarth, bad, kEarth).hides({-kEarth, 0, 0}));
 }
 
 }  // namespace

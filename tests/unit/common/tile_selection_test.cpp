@@ -66,7 +66,8 @@ class Residents {
 };
 
 /// Loads what is wanted until nothing more is, as a client on a fast line does.
-TileSelection settle(const Camera& camera, const SelectionBody& body, const SelectionSettings& settings, Residents& residents) {
+TileSelection settle(const Camera& camera, const SelectionBody& body, const SelectionSettings& settings,
+                     Residents& residents) {
   TileSelection selection;
   for (int round = 0; round < 40; ++round) {
     selection = selectTiles(camera, body, residents.lookup(), settings);
@@ -85,8 +86,8 @@ struct Views {
   double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
   Camera camera() {
     const double pitches[] = {-kPi / 2, 0.0, between(-kPi / 2, kPi / 2)};
-    const ViewPose pose{between(-kPi, kPi), std::asin(between(-1, 1)), std::pow(10.0, between(3.5, 7)), between(-kPi, kPi),
-                        pitches[random() % 3]};
+    const ViewPose pose{between(-kPi, kPi), std::asin(between(-1, 1)), std::pow(10.0, between(3.5, 7)),
+                        between(-kPi, kPi), pitches[random() % 3]};
     return cameraFromPose(pose, kMoon, 0.9, 1280, 720);
   }
 };
@@ -156,7 +157,8 @@ TEST(TileSelection, StaysDisjointAndBalancedWhateverIsResident) {
   int coarserThanWanted = 0;
   for (int i = 0; i < 150; ++i) {
     const Camera camera = views.camera();
-    // A tolerance this loose refines towards the camera in steep steps, so that balance has work to do in the wanted set as well.
+    // A tolerance this loose refines towards the camera in steep steps, so that balance has work to do in the wanted
+    // set as well.
     const SelectionSettings settings{.errorPixels = i % 3 == 0 ? 40.0 : 2.0};
     Residents all;
     const TileSelection settled = settle(camera, body, settings, all);
@@ -234,16 +236,19 @@ TEST(TileSelection, IsAPureFunctionOfItsArguments) {
 
 TEST(TileSelection, AsksForTheCoarsestFirst) {
   Residents residents;
-  const TileSelection selection = settle(cameraFromPose({0.3, 0.2, 5000, 1, -0.5}, kMoon, 0.9, 1280, 720), moon(), {}, residents);
-  EXPECT_TRUE(std::is_sorted(selection.wanted.begin(), selection.wanted.end(), [](const WantedTile& a, const WantedTile& b) {
-    return a.path.level() < b.path.level() ||
-           (a.path.level() == b.path.level() && a.screenErrorPixels > b.screenErrorPixels);
-  }));
+  const TileSelection selection =
+      settle(cameraFromPose({0.3, 0.2, 5000, 1, -0.5}, kMoon, 0.9, 1280, 720), moon(), {}, residents);
+  EXPECT_TRUE(
+      std::is_sorted(selection.wanted.begin(), selection.wanted.end(), [](const WantedTile& a, const WantedTile& b) {
+        return a.path.level() < b.path.level() ||
+               (a.path.level() == b.path.level() && a.screenErrorPixels > b.screenErrorPixels);
+      }));
   EXPECT_EQ(selection.wanted.front().path.level(), 0);
 }
 
 TEST(TileSelection, SaysThatAVisibleFaceIsMissing) {
-  const Camera camera = cameraFromPose({kPi / 4, 0, 3e6, 0, -kPi / 2}, kMoon, 0.9, 1280, 720);  // over the edge of faces 0 and 2
+  const Camera camera =
+      cameraFromPose({kPi / 4, 0, 3e6, 0, -kPi / 2}, kMoon, 0.9, 1280, 720);  // over the edge of faces 0 and 2
   Residents residents;
   EXPECT_TRUE(selectTiles(camera, moon(), residents.lookup(), {}).rootsMissing);
   EXPECT_TRUE(selectTiles(camera, moon(), residents.lookup(), {}).draw.empty());
@@ -258,7 +263,8 @@ TEST(TileSelection, NeverExceedsTheBoundOnTheWork) {
   for (const int bound : {6, 50, 300}) {
     const SelectionSettings settings{.errorPixels = 0.05, .maxTiles = bound};
     Residents residents;
-    const TileSelection selection = settle(cameraFromPose({0.3, 0.2, 50'000, 1, -0.5}, kMoon, 0.9, 1280, 720), moon(), settings, residents);
+    const TileSelection selection =
+        settle(cameraFromPose({0.3, 0.2, 50'000, 1, -0.5}, kMoon, 0.9, 1280, 720), moon(), settings, residents);
     EXPECT_LE(selection.wanted.size(), static_cast<std::size_t>(bound));
     EXPECT_TRUE(selection.complete);
     expectDisjointAndBalanced(selection.draw);
@@ -284,11 +290,69 @@ TEST(TileSelection, WantsNothingBeyondTheHorizon) {
   }
 }
 
+TEST(TileSelection, LeavesOutALeafWhoseOwnMeshIsOutOfViewButNotWhatMayHoldFinerGround) {
+  // Looking level from 3 km over a body whose proven bounds reach above the camera everywhere, and whose ground lies
+  // deep below.
+  const Camera camera = cameraFromPose({0, 0, 3000, 0, 0.6}, kMoon, 0.9, 1280, 720);
+  const ResidentTile wide{.subtreeHeights = kHeights},
+      tight{.subtreeHeights = kHeights, .ownHeights = HeightRange{-8000, -7900}};
+  const SelectionBody body = moon(5);
+  const auto leaves = [&](const ResidentTile& everyTile) {
+    std::size_t count = 0;
+    for (const WantedTile& tile : selectTiles(camera, body, [&](const FacePath&) { return &everyTile; }, {}).wanted)
+      count += tile.leaf;
+    return count;
+  };
+  EXPECT_GT(leaves(wide), 0u);
+  EXPECT_EQ(leaves(tight), 0u);
+}
+
+TEST(TileSelection, RemembersADroppedTileWithoutAskingForItAgain) {
+  Views views;
+  for (int i = 0; i < 20; ++i) {
+    const Camera camera = views.camera();
+    Residents residents;
+    const TileSelection settled = settle(camera, moon(), {}, residents);
+    PathSet wanted;
+    for (const WantedTile& tile : settled.wanted) wanted.insert(tile.path);
+    // All that is not wanted is dropped; what is known of it stays.
+    std::unordered_map<FacePath, ResidentTile> dropped;
+    const ResidentLookup lookup = [&](const FacePath& path) -> const ResidentTile* {
+      const ResidentTile* tile = residents.lookup()(path);
+      if (tile == nullptr || wanted.contains(path)) return tile;
+      ResidentTile memory = *tile;
+      memory.drawable = false;
+      return &dropped.insert_or_assign(path, memory).first->second;
+    };
+    const TileSelection after = selectTiles(camera, moon(), lookup, {});
+    EXPECT_TRUE(after.complete);
+    EXPECT_EQ(after.draw, settled.draw);
+    for (const WantedTile& tile : after.wanted) EXPECT_TRUE(wanted.contains(tile.path)) << tile.path.text();
+  }
+}
+
+TEST(TileSelection, AsksAheadForAFewLevelsButNotForTheWholePlanet) {
+  const Camera camera = cameraFromPose({0.3, 0.2, 2, 1, -0.3}, kMoon, 0.9, 1280, 720);
+  Residents residents;
+  int rounds = 0;
+  for (bool news = true; news; ++rounds) {
+    news = false;
+    const TileSelection selection = selectTiles(camera, moon(), residents.lookup(), {});
+    EXPECT_LT(selection.wanted.size(), 1500u);
+    for (const WantedTile& tile : selection.wanted) {
+      news = news || !residents.has(tile.path);
+      residents.add(tile.path);
+    }
+  }
+  EXPECT_LT(rounds, 15);  // of 24 levels
+}
+
 TEST(TileSelection, StandsAnywhere) {
   // A face's corner, the planet's centre, very far out, below ground, nowhere.
   const double corner = std::asin(1 / std::sqrt(3.0));
-  for (const ViewPose& pose : {ViewPose{kPi / 4, corner, 10, 0, -0.3}, ViewPose{0, 0, -kMoon, 0, 0}, ViewPose{0, 0, 1e15, 0, -kPi / 2},
-                               ViewPose{1, 1, -5000, 0, 0}, ViewPose{0, kPi / 2, 1, 0, -kPi / 2}}) {
+  for (const ViewPose& pose :
+       {ViewPose{kPi / 4, corner, 10, 0, -0.3}, ViewPose{0, 0, -kMoon, 0, 0}, ViewPose{0, 0, 1e15, 0, -kPi / 2},
+        ViewPose{1, 1, -5000, 0, 0}, ViewPose{0, kPi / 2, 1, 0, -kPi / 2}}) {
     Residents residents;
     const TileSelection selection = settle(cameraFromPose(pose, kMoon, 0.9, 1280, 720), moon(), {}, residents);
     EXPECT_TRUE(selection.complete);

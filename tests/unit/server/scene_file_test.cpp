@@ -207,6 +207,18 @@ TEST(SceneFile, DeepNestingOfEveryKindIsRefusedAndNotFollowed) {
     EXPECT_FALSE(parseScene(text, "t.toml")) << text.substr(0, 20);
 }
 
+// Each of these breaks an assumption that the TOML library makes of its own state.
+TEST(SceneFile, WhatTheLibraryTakesForImpossibleIsASyntaxError) {
+  for (const std::string_view text :
+       {"[.",   "[.a]",      "[=",     "[[.]]", "[a.",    "a.",        "a.=1",         "a.b",
+        "=",    "a=",        "a={.",   "a={b",  "a=[",    "[\"",       "\"",           "a='",
+        "[a]]", "a = 1979-", "a = 0x", "a = +", "a = 1e", "a = \"\\u", "\xef\xbb\xbf["}) {
+    const Result<Scene> scene = parseScene(text, "t.toml");
+    ASSERT_FALSE(scene) << text;
+    EXPECT_EQ(scene.error().kind, ErrorKind::Malformed) << text;
+  }
+}
+
 TEST(SceneFile, TooManyBodiesAreRefused) {
   std::string text = "name = \"many\"\n";
   for (std::size_t i = 0; i <= kMaxSceneBodies; ++i)

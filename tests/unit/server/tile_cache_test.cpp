@@ -57,11 +57,16 @@ class CacheTest : public testing::Test {
     std::unique_lock lock(mutex);
     changed.wait(lock, [&] { return built.size() >= count; });
   }
+  /// An answer to come, shared with the worker that gives it: it may still be at it when the answer has been read.
+  using Answer = std::promise<Result<CachedTilePtr>>;
+  std::unique_ptr<TileCache::Ticket> ask(const TileKey& key, const std::shared_ptr<Answer>& answer) {
+    return cache->getOrBuild(key, [answer](Result<CachedTilePtr> tile) { answer->set_value(std::move(tile)); });
+  }
   /// Asks and waits.
   Result<CachedTilePtr> get(const TileKey& key) {
-    std::promise<Result<CachedTilePtr>> promise;
-    const auto ticket = cache->getOrBuild(key, [&](Result<CachedTilePtr> tile) { promise.set_value(std::move(tile)); });
-    return promise.get_future().get();
+    const auto answer = std::make_shared<Answer>();
+    const auto ticket = ask(key, answer);
+    return answer->get_future().get();
   }
   std::vector<TileKey> builtTiles() {
     const std::lock_guard lock(mutex);
@@ -143,14 +148,13 @@ TEST_F(TileCacheTest, ABuildGoesOnWhileOneOfItsWaitersIsLeft) {
   hold();
   auto running = cache->getOrBuild(keyAt(1), [](const Result<CachedTilePtr>&) {});
   waitUntilBuilding(1);
-  std::promise<bool> served;
+  const auto served = std::make_shared<Answer>();
   bool droppedCalled = false;
   auto first = cache->getOrBuild(keyAt(2), [&](const Result<CachedTilePtr>&) { droppedCalled = true; });
-  auto second =
-      cache->getOrBuild(keyAt(2), [&](const Result<CachedTilePtr>& tile) { served.set_value(tile.has_value()); });
+  auto second = ask(keyAt(2), served);
   first.reset();
   release();
-  EXPECT_TRUE(served.get_future().get());
+  EXPECT_TRUE(served->get_future().get());
   EXPECT_FALSE(droppedCalled);
 }
 
@@ -199,12 +203,12 @@ TEST_F(TileCacheTest, ErrorsAreNotCachedAndReachEveryWaiter) {
     return tileOfBytes(10);
   };
   hold();
-  std::promise<std::string> one, two;
-  auto first = cache->getOrBuild(keyAt(1), [&](Result<CachedTilePtr> tile) { one.set_value(tile.error().message); });
-  auto second = cache->getOrBuild(keyAt(1), [&](Result<CachedTilePtr> tile) { two.set_value(tile.error().message); });
+  const auto one = std::make_shared<Answer>(), two = std::make_shared<Answer>();
+  auto first = ask(keyAt(1), one);
+  auto second = ask(keyAt(1), two);
   release();
-  EXPECT_EQ(one.get_future().get(), "no luck");
-  EXPECT_EQ(two.get_future().get(), "no luck");
+  EXPECT_EQ(one->get_future().get().error().message, "no luck");
+  EXPECT_EQ(two->get_future().get().error().message, "no luck");
   EXPECT_EQ(cache->stats().entries, 0u);
   fail = false;
   EXPECT_TRUE(get(keyAt(1)));
@@ -277,13 +281,13 @@ TEST_F(TileCacheTest, ACacheOfNoBytesStillServes) {
 TEST_F(TileCacheTest, DestroyingTheCacheCancelsQueuedAndRunningWaiters) {
   make(1 << 20);
   hold();
-  std::promise<ErrorKind> running, queued;
-  auto first = cache->getOrBuild(keyAt(1), [&](Result<CachedTilePtr> tile) { running.set_value(tile.error().kind); });
+  const auto running = std::make_shared<Answer>(), queued = std::make_shared<Answer>();
+  auto first = ask(keyAt(1), running);
   waitUntilBuilding(1);
-  auto second = cache->getOrBuild(keyAt(2), [&](Result<CachedTilePtr> tile) { queued.set_value(tile.error().kind); });
+  auto second = ask(keyAt(2), queued);
   cache.reset();
-  EXPECT_EQ(running.get_future().get(), ErrorKind::Cancelled);
-  EXPECT_EQ(queued.get_future().get(), ErrorKind::Cancelled);
+  EXPECT_EQ(running->get_future().get().error().kind, ErrorKind::Cancelled);
+  EXPECT_EQ(queued->get_future().get().error().kind, ErrorKind::Cancelled);
   first.reset();  // tickets may outlive their cache
   release();
   pool.reset();
@@ -295,10 +299,10 @@ TEST_F(TileCacheTest, APoolThatStopsCancelsWhatWaitsInItsQueue) {
   hold();
   auto first = cache->getOrBuild(keyAt(1), [](const Result<CachedTilePtr>&) {});
   waitUntilBuilding(1);
-  std::promise<ErrorKind> queued;
-  auto second = cache->getOrBuild(keyAt(2), [&](Result<CachedTilePtr> tile) { queued.set_value(tile.error().kind); });
+  const auto queued = std::make_shared<Answer>();
+  auto second = ask(keyAt(2), queued);
   std::thread stopper([&] { pool->stop(); });
-  EXPECT_EQ(queued.get_future().get(), ErrorKind::Cancelled);
+  EXPECT_EQ(queued->get_future().get().error().kind, ErrorKind::Cancelled);
   release();
   stopper.join();
   EXPECT_EQ(get(keyAt(3)).error().kind, ErrorKind::Overloaded);

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -45,10 +47,10 @@ class TileServiceTest : public testing::Test {
     });
   }
   ServiceResponse ask(std::string_view target, std::string_view ifNoneMatch = {}, HttpMethod method = HttpMethod::Get) {
-    std::promise<ServiceResponse> promise;
+    const auto answer = std::make_shared<std::promise<ServiceResponse>>();  // shared with the worker that gives it
     const auto ticket = service->handle({method, target, ifNoneMatch},
-                                        [&](ServiceResponse response) { promise.set_value(std::move(response)); });
-    return promise.get_future().get();
+                                        [answer](ServiceResponse response) { answer->set_value(std::move(response)); });
+    return answer->get_future().get();
   }
   static std::string tile(std::string_view rest) {
     return "/v1/" + std::string(kRevision) + "/" + std::string(rest) + ".glb";

@@ -14,28 +14,32 @@
 namespace terrane {
 namespace {
 
-/// Occupies the only worker of a pool until it is opened.
+/// Occupies the only worker of a pool until it is opened. The worker shares what it waits on, for it may still be
+/// looking at it when a test ends.
 class Gate {
  public:
   explicit Gate(WorkerPool& pool) {
-    EXPECT_TRUE(pool.post(1000, [this] {
-      entered_.set_value();
-      opened_.get_future().wait();
+    EXPECT_TRUE(pool.post(1000, [state = state_] {
+      state->entered.set_value();
+      state->opened.get_future().wait();
     }));
-    entered_.get_future().wait();
+    state_->entered.get_future().wait();
   }
-  void open() { opened_.set_value(); }
+  void open() { state_->opened.set_value(); }
 
  private:
-  std::promise<void> entered_, opened_;
+  struct State {
+    std::promise<void> entered, opened;
+  };
+  std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
 TEST(WorkerPool, RunsTheHighestPriorityFirstAndEqualOnesInTheirOrder) {
-  WorkerPool pool(1, 100);
-  Gate gate(pool);
   std::mutex mutex;
   std::vector<int> order;
   std::promise<void> done;
+  WorkerPool pool(1, 100);
+  Gate gate(pool);
   const auto job = [&](int name) {
     return [&, name] {
       const std::lock_guard lock(mutex);
@@ -64,14 +68,14 @@ TEST(WorkerPool, RefusesAJobWhenTheQueueIsFull) {
 }
 
 TEST(WorkerPool, AWithdrawnJobDoesNotRunAndItsPlaceIsFree) {
+  bool withdrawnRan = false;
+  std::promise<void> done;
   WorkerPool pool(1, 1);
   Gate gate(pool);
-  bool withdrawnRan = false;
   const auto id = pool.post(0, [&] { withdrawnRan = true; });
   ASSERT_TRUE(id);
   EXPECT_TRUE(pool.withdraw(*id));
   EXPECT_FALSE(pool.withdraw(*id));
-  std::promise<void> done;
   EXPECT_TRUE(pool.post(0, [&] { done.set_value(); }));
   gate.open();
   done.get_future().wait();
@@ -98,10 +102,10 @@ TEST(WorkerPool, StopDestroysWhatIsQueuedAndRefusesNewJobs) {
 }
 
 TEST(WorkerPool, AJobThatThrowsDoesNotEndItsThread) {
+  std::promise<void> done;
   WorkerPool pool(1, 10);
   pool.post(0, [] { throw std::runtime_error("thrown by a test"); });
   pool.post(0, [] { throw 7; });
-  std::promise<void> done;
   pool.post(0, [&] { done.set_value(); });
   done.get_future().wait();
 }
