@@ -34,54 +34,70 @@ void addOptions(CLI::App& app, ServerSettings& settings, RawOptions& raw) {
   const std::string scenes = fmt::format("{}", fmt::join(shippedScenes(), ", "));
   app.add_option("--scene", settings.scene,
                  "What to serve: a scene that ships (" + scenes + ") or a path to a .toml file")
+      ->type_name("NAME|FILE")
       ->capture_default_str();
   app.add_option("--listen", settings.http.listen,
                  "HOST:PORT to listen on; may be repeated. [::1]:8080 for IPv6; port 0 picks a free one")
+      ->type_name("HOST:PORT")
       ->default_str("127.0.0.1:8080")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->allow_extra_args(false);
   app.add_option("--threads", settings.service.threads, "Threads that build tiles; 0: one for each CPU")
       ->check(CLI::Range(0, 1024))
+      ->type_name("N")
       ->capture_default_str();
   app.add_option("--io-threads", settings.http.ioThreads, "Threads that move bytes")
       ->check(CLI::Range(1, 256))
+      ->type_name("N")
       ->capture_default_str();
   app.add_option("--memory-cache", raw.memoryCache, "Bytes of finished tiles kept in memory, as 256MiB; 0 keeps none")
+      ->type_name("SIZE")
       ->capture_default_str();
   app.add_option("--max-queued", settings.service.maxQueuedBuilds,
                  "Tiles that may wait to be built; beyond that requests get 503")
       ->check(CLI::Range(1, 1'000'000))
+      ->type_name("N")
       ->capture_default_str();
   app.add_option("--cells", settings.service.wire.cellsPerEdge, "Cells along a tile's edge: 16, 32, 64 or 128")
       ->check(CLI::IsMember({16, 32, 64, 128}))
+      ->type_name("N")
       ->capture_default_str();
   app.add_option(
-      "--simd", raw.simd,
-      "Vector instructions for the height field: default, v3 (AVX2) or v4 (AVX-512). Same tiles, another speed.\n"
-      "Without it: the best that this CPU has");
+         "--simd", raw.simd,
+         "Vector instructions for the height field: default, v3 (AVX2) or v4 (AVX-512). Same tiles, another speed.\n"
+         "Without it: the best that this CPU has")
+      ->type_name("LEVEL");
   app.add_option("--max-connections", settings.http.maxConnections, "Connections at once; beyond that they get 503")
       ->check(CLI::Range(1, 1'000'000))
+      ->type_name("N")
       ->capture_default_str();
   app.add_option("--header-timeout", raw.headerTimeout, "Seconds for a request's header to arrive")
       ->check(CLI::Range(0.001, 86400.0))
+      ->type_name("S")
       ->capture_default_str();
   app.add_option("--idle-timeout", raw.idleTimeout, "Seconds that a connection may be silent between requests")
       ->check(CLI::Range(0.001, 86400.0))
+      ->type_name("S")
       ->capture_default_str();
   app.add_option("--write-timeout", raw.writeTimeout, "Seconds without a byte of a response being taken")
       ->check(CLI::Range(0.001, 86400.0))
+      ->type_name("S")
       ->capture_default_str();
   app.add_option("--response-timeout", raw.responseTimeout, "Seconds for a tile to be built; then 503")
       ->check(CLI::Range(0.001, 86400.0))
+      ->type_name("S")
       ->capture_default_str();
   app.add_option("--max-header", raw.maxHeader, "Bytes of a request's header, 1KiB to 1MiB; beyond that 431")
+      ->type_name("SIZE")
       ->capture_default_str();
   app.add_option("--shutdown-grace", raw.shutdownGrace, "Seconds for what is under way when the server stops")
       ->check(CLI::Range(0.0, 86400.0))
+      ->type_name("S")
       ->capture_default_str();
   app.add_option("--log-level", settings.logLevel, "What goes to stderr: debug, info, warn, error or off")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
+      ->type_name("LEVEL")
       ->capture_default_str();
   app.add_flag("--check", settings.check, "Validate the scene, say so, and exit");
   app.add_flag("--explain", settings.explain,

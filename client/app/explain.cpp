@@ -8,8 +8,8 @@
 #include <iterator>
 #include <utility>
 
-#include "client/app/readable_units.h"
 #include "client/app/run_statistics.h"
+#include "client/render/readable_units.h"
 
 namespace terrane {
 namespace {
@@ -18,7 +18,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kMeasuredFrames = 15;
 
-double millisecondsSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 struct Cost {
   double withMs = 0, withoutMs = 0;
@@ -29,7 +31,8 @@ struct Cost {
 Result<Cost> measure(ViewSession& session, EffectKind kind) {
   const std::vector<EffectCall>& all = session.scene().effects;
   std::vector<EffectCall> others;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(others), [&](const EffectCall& call) { return call.kind != kind; });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(others),
+               [&](const EffectCall& call) { return call.kind != kind; });
   auto with = TileRenderer::create(all);
   if (!with) return with.error();
   auto without = TileRenderer::create(others);
@@ -57,21 +60,25 @@ std::string costText(ViewSession& session, const EffectRow& row, bool on) {
   if (row.side == EffectSide::Server) return fmt::format("{} (at the server; its --explain measures it)", row.cost);
   const auto cost = measure(session, row.kind);
   if (!cost) return fmt::format("not measured: {}", cost.error().text());
-  return fmt::format("{:+.2f} ms a frame ({:.2f} ms with it, {:.2f} ms without), {:+} bytes on the GPU", cost->withMs - cost->withoutMs,
-                     cost->withMs, cost->withoutMs, cost->gpuBytes);
+  return fmt::format("{:+.2f} ms a frame ({:.2f} ms with it, {:.2f} ms without), {:+} bytes on the GPU",
+                     cost->withMs - cost->withoutMs, cost->withMs, cost->withoutMs, cost->gpuBytes);
 }
 
 }  // namespace
 
 std::string explainEffects(ViewSession& session) {
   const SceneInfo& scene = session.scene();
-  const std::vector<std::pair<std::string, int>> constructed = constructionCounts();  // before measuring constructs more
-  std::string text = fmt::format("scene {}, body {}: {} tiles drawn, {} above the sphere\n", scene.name, session.body().name,
-                                 session.drawn().size(), lengthText(session.pose().altitudeMeters));
+  const std::vector<std::pair<std::string, int>> constructed =
+      constructionCounts();  // before measuring constructs more
+  std::string text =
+      fmt::format("scene {}, body {}: {} tiles drawn, {} above the sphere\n", scene.name, session.body().name,
+                  session.drawn().size(), lengthText(session.pose().altitudeMeters));
   for (const EffectRow& row : effectTable()) {
-    const bool on = std::any_of(scene.effects.begin(), scene.effects.end(), [&](const EffectCall& call) { return call.kind == row.kind; });
-    text += fmt::format("effect {}: {}\n  shows  {}\n  needs  {}\n  why    the scene {}\n  costs  {}\n", row.name, on ? "on" : "off",
-                        row.summary, row.needs, on ? fmt::format("names it: [effects.{}]", row.name) : "does not name it",
+    const bool on = std::any_of(scene.effects.begin(), scene.effects.end(),
+                                [&](const EffectCall& call) { return call.kind == row.kind; });
+    text += fmt::format("effect {}: {}\n  shows  {}\n  needs  {}\n  why    the scene {}\n  costs  {}\n", row.name,
+                        on ? "on" : "off", row.summary, row.needs,
+                        on ? fmt::format("names it: [effects.{}]", row.name) : "does not name it",
                         costText(session, row, on));
   }
   text += "constructed";

@@ -7,8 +7,8 @@
 
 namespace terrane {
 
-/// Several lines of text. The cost of a client's effect is measured: the view is drawn with it and without it, turn about, by two
-/// renderers that differ in nothing else.
+/// Several lines of text. The cost of a client's effect is measured: the view is drawn with it and without it, turn
+/// about, by two renderers that differ in nothing else.
 std::string explainEffects(ViewSession& session);
 
 }  // namespace terrane

@@ -12,7 +12,8 @@ constexpr double kSameFrame = 1e-6;
 }  // namespace
 
 Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place) {
-  if (nameOrFile == "descent" || nameOrFile == "orbit") return builtInFlight(nameOrFile, place.longitude, place.latitude);
+  if (nameOrFile == "descent" || nameOrFile == "orbit")
+    return builtInFlight(nameOrFile, place.longitude, place.latitude);
   auto flight = loadFlight(nameOrFile);
   if (flight) return flight;
   Error error = flight.error();
@@ -24,7 +25,8 @@ Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place) 
 Result<FlightPlan> planFlight(const Flight& flight, double stepSeconds, std::size_t maxFrames) {
   const double start = flight.points.front().seconds;
   if ((flight.durationSeconds() - start) / stepSeconds > kMostFrames)
-    return makeError(ErrorKind::TooLarge, "--step", fmt::format("{} s makes more than {:.0f} frames of this flight", stepSeconds, kMostFrames));
+    return makeError(ErrorKind::TooLarge, "--step",
+                     fmt::format("{} s makes more than {:.0f} frames of this flight", stepSeconds, kMostFrames));
   FlightPlan plan;
   plan.aboveGround = flight.aboveGround;
   plan.points = flight.points.size();
@@ -34,7 +36,8 @@ Result<FlightPlan> planFlight(const Flight& flight, double stepSeconds, std::siz
     const double end = flight.points[i].seconds;
     for (double t = start + static_cast<double>(step) * stepSeconds; t < end - kSameFrame * stepSeconds && !full();
          t = start + static_cast<double>(++step) * stepSeconds)
-      if (i > 0 && t > flight.points[i - 1].seconds + kSameFrame * stepSeconds) plan.frames.push_back({t, poseAt(flight, t), -1});
+      if (i > 0 && t > flight.points[i - 1].seconds + kSameFrame * stepSeconds)
+        plan.frames.push_back({t, poseAt(flight, t), -1});
     if (!full()) plan.frames.push_back({end, flight.points[i].pose, static_cast<int>(i)});
   }
   return plan;

@@ -1,5 +1,6 @@
 #pragma once
-// The frames of a scripted run, before any is drawn: a pose for each, and which of them are points of the flight. Thread-safe.
+// The frames of a scripted run, before any is drawn: a pose for each, and which of them are points of the flight.
+// Thread-safe.
 
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
-// Collects a flight while it is flown: at most thirty points a second, and a point before each pause ends, so that the flight
-// rests as long as the person did. One thread.
+// Collects a flight while it is flown: at most thirty points a second, and a point before each pause ends, so that the
+// flight rests as long as the person did. One thread.
 
 #include "client/flight/flight_file.h"
 

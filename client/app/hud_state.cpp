@@ -5,7 +5,8 @@
 
 namespace terrane {
 
-HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const DrawStats& drawn, std::vector<float>& frameMs) {
+HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const DrawStats& drawn,
+                    std::vector<float>& frameMs) {
   constexpr double kDegrees = 180 / std::numbers::pi;
   const StreamStatus stream = session.streamStatus();
   frameMs = times.last(120);

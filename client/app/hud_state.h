@@ -8,7 +8,8 @@
 namespace terrane {
 
 /// frameMs: where the last frames' times are kept while the state is in use.
-HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const DrawStats& drawn, std::vector<float>& frameMs);
+HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const DrawStats& drawn,
+                    std::vector<float>& frameMs);
 
 /// Fills in what the session knows at the run's end.
 void describeSession(const ViewSession& session, const ViewOptions& options, RunStatistics& statistics);

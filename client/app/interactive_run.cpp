@@ -26,17 +26,24 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Done = Result<bool>;
 
-// How long the loop may sleep when nothing moves: arrivals and events wake it, so this only bounds how late a message is.
+// How long the loop may sleep when nothing moves: arrivals and events wake it, so this only bounds how late a message
+// is.
 constexpr double kSleepSettledSeconds = 5, kSleepLoadingSeconds = 0.25;
 constexpr double kNoticeSeconds = 4;
 constexpr int kPlacementCount = static_cast<int>(Placement::Float32) + 1;
 
-double secondsBetween(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
+double secondsBetween(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
 
 class InteractiveRun {
  public:
   InteractiveRun(const ViewOptions& options, Window& window, Clock::time_point start)
-      : options_(options), window_(window), start_(start), budget_(options.frameBudgetMs, options.errorPixels), input_(window.handle()) {}
+      : options_(options),
+        window_(window),
+        start_(start),
+        budget_(options.frameBudgetMs, options.errorPixels),
+        input_(window.handle()) {}
 
   Done run();
 
@@ -64,7 +71,7 @@ class InteractiveRun {
   CameraControls controls_{ViewPose{}};
   std::optional<Flight> flight_;
   double flightSeconds_ = 0;
-  bool handsOn_ = false;       // the person has taken over: --above-ground no longer moves the camera
+  bool handsOn_ = false;  // the person has taken over: --above-ground no longer moves the camera
   FlightRecorder recorder_;
   RunStatistics statistics_;
   DrawStats drawn_;
@@ -116,7 +123,8 @@ void InteractiveRun::drawConnecting() {
 
 Done InteractiveRun::begin() {
   const auto [width, height] = window_.framebufferSize();
-  const ViewPose whole = wholeBodyPose(session_->scene(), session_->body(), options_.verticalFieldOfView, width, height);
+  const ViewPose whole =
+      wholeBodyPose(session_->scene(), session_->body(), options_.verticalFieldOfView, width, height);
   const ViewPose home = options_.camera.value_or(whole);
   controls_ = CameraControls(home);
   if (!options_.flight.empty()) {
@@ -134,7 +142,8 @@ ViewSession::View InteractiveRun::viewNow(double seconds) {
   view.widthPixels = std::max(width, 16);
   view.heightPixels = std::max(height, 16);
   const ControlInput input = input_.take(slept_ ? std::min(seconds, 1.0 / 60) : seconds);
-  const bool hands = input.primaryButton || input.secondaryButton || input.wheelSteps != 0 || input.move != glm::dvec3(0.0);
+  const bool hands =
+      input.primaryButton || input.secondaryButton || input.wheelSteps != 0 || input.move != glm::dvec3(0.0);
   if (hands && flight_) {
     flight_.reset();
     notice("flight left");
@@ -154,8 +163,10 @@ ViewSession::View InteractiveRun::viewNow(double seconds) {
     view.aboveGround = options_.aboveGround;
     return view;
   }
-  const ControlView shape{session_->body().selection.radiusMeters, options_.verticalFieldOfView, view.widthPixels, view.heightPixels};
-  view.pose = controls_.advance(input, shape, [this](const glm::dvec3& direction) { return session_->groundHeight(direction); });
+  const ControlView shape{session_->body().selection.radiusMeters, options_.verticalFieldOfView, view.widthPixels,
+                          view.heightPixels};
+  view.pose = controls_.advance(input, shape,
+                                [this](const glm::dvec3& direction) { return session_->groundHeight(direction); });
   return view;
 }
 
@@ -169,13 +180,27 @@ void InteractiveRun::obey(ViewCommand command) {
   DrawSettings& draw = session_->drawSettings;
   redraw_ = true;
   switch (command) {
-    case ViewCommand::ToggleHud: showFigures_ = !showFigures_; break;
-    case ViewCommand::ToggleWireframe: draw.wireframe = !draw.wireframe; break;
-    case ViewCommand::ToggleLevelColors: draw.levelColors = !draw.levelColors; break;
-    case ViewCommand::ToggleFreeze: session_->frozen = !session_->frozen; break;
-    case ViewCommand::LessDetail: budget_.setAsked(std::min(budget_.asked() * 1.25, 100.0)); break;
-    case ViewCommand::MoreDetail: budget_.setAsked(std::max(budget_.asked() / 1.25, 0.1)); break;
-    case ViewCommand::Screenshot: screenshot(); break;
+    case ViewCommand::ToggleHud:
+      showFigures_ = !showFigures_;
+      break;
+    case ViewCommand::ToggleWireframe:
+      draw.wireframe = !draw.wireframe;
+      break;
+    case ViewCommand::ToggleLevelColors:
+      draw.levelColors = !draw.levelColors;
+      break;
+    case ViewCommand::ToggleFreeze:
+      session_->frozen = !session_->frozen;
+      break;
+    case ViewCommand::LessDetail:
+      budget_.setAsked(std::min(budget_.asked() * 1.25, 100.0));
+      break;
+    case ViewCommand::MoreDetail:
+      budget_.setAsked(std::max(budget_.asked() / 1.25, 0.1));
+      break;
+    case ViewCommand::Screenshot:
+      screenshot();
+      break;
     case ViewCommand::ToggleMode:
       if (!handsOn_) controls_.setPose(session_->pose());
       handsOn_ = true;
@@ -190,7 +215,9 @@ void InteractiveRun::obey(ViewCommand command) {
     case ViewCommand::NextPlacement:
       draw.placement = static_cast<Placement>((static_cast<int>(draw.placement) + 1) % kPlacementCount);
       break;
-    case ViewCommand::Quit: quit_ = true; break;
+    case ViewCommand::Quit:
+      quit_ = true;
+      break;
   }
   session_->errorPixels = budget_.errorPixels();
 }
@@ -200,7 +227,8 @@ void InteractiveRun::screenshot() {
   const auto [width, height] = window_.framebufferSize();
   session_->draw();
   std::string file;
-  for (int number = 1; file.empty() || std::filesystem::exists(file); ++number) file = fmt::format("terrane-{:04}.png", number);
+  for (int number = 1; file.empty() || std::filesystem::exists(file); ++number)
+    file = fmt::format("terrane-{:04}.png", number);
   const auto written = writePng(readFramebuffer(width, height), file);
   notice(written ? "wrote " + file : "no screenshot: " + written.error().text());
 }
@@ -260,7 +288,8 @@ void InteractiveRun::drawOverlay() {
 }
 
 void InteractiveRun::sleep(const UpdateReport& report) {
-  const bool flying = flight_ && firstFullView_ && flightSeconds_ < flight_->durationSeconds() - flight_->points.front().seconds;
+  const bool flying =
+      flight_ && firstFullView_ && flightSeconds_ < flight_->durationSeconds() - flight_->points.front().seconds;
   const bool active = flying || controls_.moving() || input_.held() || redraw_ || !budget_.steady();
   slept_ = !active;
   if (active) return window_.poll();

@@ -1,6 +1,6 @@
 #pragma once
-// The viewer that follows a person's hands: window events, camera controls or a flight, overlay, screenshots. It draws only when
-// something changed and sleeps otherwise. GL thread only.
+// The viewer that follows a person's hands: window events, camera controls or a flight, overlay, screenshots. It draws
+// only when something changed and sleeps otherwise. GL thread only.
 
 #include <chrono>
 

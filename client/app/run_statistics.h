@@ -14,7 +14,8 @@
 
 namespace terrane {
 
-/// Frame times of a run: percentiles over the last kKept frames (a quarter of a million: more than an hour at 60 a second).
+/// Frame times of a run: percentiles over the last kKept frames (a quarter of a million: more than an hour at 60 a
+/// second).
 class FrameTimes {
  public:
   static constexpr std::size_t kKept = 1u << 18;
@@ -34,19 +35,19 @@ class FrameTimes {
 
 /// One point of a flight that was captured.
 struct PointStatistics {
-  std::string name;              ///< the altitude as a person reads it: "100 km"
-  double altitudeMeters = 0;     ///< as the flight has it
-  std::uint64_t frames = 0;      ///< since the point before
-  double medianMs = 0;           ///< of those frames
+  std::string name;           ///< the altitude as a person reads it: "100 km"
+  double altitudeMeters = 0;  ///< as the flight has it
+  std::uint64_t frames = 0;   ///< since the point before
+  double medianMs = 0;        ///< of those frames
   std::size_t tilesDrawn = 0;
   std::uint64_t bytesReceived = 0;  ///< since the point before
   std::uint64_t uncoveredPixels = 0, skirtPixels = 0;
-  std::string capture;           ///< the picture's file, empty if none was asked for
+  std::string capture;  ///< the picture's file, empty if none was asked for
 };
 
 struct RunStatistics {
   FrameTimes frameTimes;
-  double msToSettle = -1;        ///< from the program's start to the first full view; -1: never
+  double msToSettle = -1;                          ///< from the program's start to the first full view; -1: never
   std::size_t tilesDrawn = 0, trianglesDrawn = 0;  ///< in the last frame
   std::uint64_t uncoveredPixels = 0, skirtPixels = 0, framesCounted = 0;
   std::uint64_t rssBytes = 0, gpuBytes = 0;
@@ -54,12 +55,12 @@ struct RunStatistics {
   Placement placement = Placement::Integer;
   SelfTestReport selfTest;
   StreamStatus stream;
-  ViewPose pose;                 ///< of the last frame
+  ViewPose pose;                        ///< of the last frame
   double heightAboveGroundMeters = -1;  ///< -1: not known
   int widthPixels = 0, heightPixels = 0;
   std::string server, scene, body;
-  std::vector<std::string> effects;                     ///< that the scene names
-  std::vector<std::pair<std::string, int>> constructed; ///< by name
+  std::vector<std::string> effects;                      ///< that the scene names
+  std::vector<std::pair<std::string, int>> constructed;  ///< by name
   std::vector<PointStatistics> points;
 };
 

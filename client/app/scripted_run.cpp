@@ -8,12 +8,12 @@
 #include "client/app/explain.h"
 #include "client/app/flight_plan.h"
 #include "client/app/hud_state.h"
-#include "client/app/readable_units.h"
 #include "client/app/run_statistics.h"
 #include "client/app/view_session.h"
 #include "client/controls/frame_budget.h"
 #include "client/gl/image.h"
 #include "client/render/hud.h"
+#include "client/render/readable_units.h"
 
 namespace terrane {
 namespace {
@@ -21,7 +21,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Done = Result<bool>;
 
-double millisecondsSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 // What a point of the flight is measured against: where the run stood at the point before.
 struct Mark {
@@ -70,8 +72,8 @@ Error ScriptedRun::notComplete(std::string_view what, double seconds) const {
   std::string why = status.message;
   if (why.empty() && status.failed > 0) why = fmt::format("{} tiles failed", status.failed);
   if (why.empty()) why = "the server is slower than that";
-  // A server that is not there is the server's flag to name; a slow view is the limit's.
-  const bool dead = status.link == LinkState::Offline || status.link == LinkState::Connecting;
+  // A server that is not there, or says nothing at all, is the server's flag to name; a slow view is the limit's.
+  const bool dead = status.link == LinkState::Offline || status.bytesReceived == 0;
   return makeError(ErrorKind::Timeout, dead ? "--server" : "--time-limit",
                    fmt::format("{} after {:.3g} s: {}", what, seconds, why));
 }
@@ -82,14 +84,15 @@ Done ScriptedRun::waitForScene() {
     const auto ready = session_->ready();
     if (!ready) return ready.error();
     if (*ready) return true;
-    if (millisecondsSince(begin) > options_.timeLimitSeconds * 1000) return notComplete("no scene", options_.timeLimitSeconds);
+    if (millisecondsSince(begin) > options_.timeLimitSeconds * 1000)
+      return notComplete("no scene", options_.timeLimitSeconds);
     window_.wait(0.02);
   }
 }
 
 Result<FlightPlan> ScriptedRun::plan() {
-  const ViewPose still = options_.camera.value_or(wholeBodyPose(session_->scene(), session_->body(), options_.verticalFieldOfView,
-                                                                options_.widthPixels, options_.heightPixels));
+  const ViewPose still = options_.camera.value_or(wholeBodyPose(
+      session_->scene(), session_->body(), options_.verticalFieldOfView, options_.widthPixels, options_.heightPixels));
   const auto frames = static_cast<std::size_t>(options_.frames);
   if (options_.flight.empty())
     return planStill(still, options_.aboveGround, frames > 0 ? frames : counting() ? 8 : 1, options_.stepSeconds);
@@ -166,9 +169,10 @@ Done ScriptedRun::finishPoint(const PlannedFrame& frame, bool aboveGround) {
     point.capture = numberedFile(options_.captureFile, statistics_.points.size() + 1);
     if (const auto captured = capture(point.capture); !captured) return captured.error();
   }
-  fmt::print("{:>10} above {}: {:>4} frames, median {:>6.1f} ms, {:>4} tiles, {:>9}, {} uncovered pixels{}{}\n", point.name,
-             aboveGround ? "ground" : "sphere", point.frames, point.medianMs, point.tilesDrawn, bytesText(point.bytesReceived),
-             counting() ? std::to_string(point.uncoveredPixels) : "not counted", point.capture.empty() ? "" : "  ", point.capture);
+  fmt::print("{:>10} above {}: {:>4} frames, median {:>6.1f} ms, {:>4} tiles, {:>9}, {} uncovered pixels{}{}\n",
+             point.name, aboveGround ? "ground" : "sphere", point.frames, point.medianMs, point.tilesDrawn,
+             bytesText(point.bytesReceived), counting() ? std::to_string(point.uncoveredPixels) : "not counted",
+             point.capture.empty() ? "" : "  ", point.capture);
   std::fflush(stdout);
   statistics_.points.push_back(std::move(point));
   mark_ = Mark{};

@@ -1,5 +1,6 @@
 #pragma once
-// A run that goes to its end by itself: settle at a camera, fly a flight at a fixed time step, capture, count, leave. GL thread only.
+// A run that goes to its end by itself: settle at a camera, fly a flight at a fixed time step, capture, count, leave.
+// GL thread only.
 
 #include <chrono>
 

@@ -34,8 +34,9 @@ std::string selfTestJson(const SelfTestReport& report) {
   return fmt::format(
       R"({{"integerExact": {}, "twoSumExact": {}, "twoProdExact": {}, "twoSumWithoutPrecise": {}, "fmaFused": {}, "chosen": {}, )"
       R"("renderer": {}, "version": {}}})",
-      truth(report.integerExact), truth(report.twoSumExact), truth(report.twoProdExact), truth(report.twoSumWithoutPrecise),
-      truth(report.fmaFused), quoted(placementName(report.chosen)), quoted(report.renderer), quoted(report.version));
+      truth(report.integerExact), truth(report.twoSumExact), truth(report.twoProdExact),
+      truth(report.twoSumWithoutPrecise), truth(report.fmaFused), quoted(placementName(report.chosen)),
+      quoted(report.renderer), quoted(report.version));
 }
 
 std::string cameraJson(const RunStatistics& s) {
@@ -52,13 +53,15 @@ std::string pointJson(const PointStatistics& p) {
   return fmt::format(
       R"({{"name": {}, "altitudeMeters": {}, "frames": {}, "medianMs": {}, "tilesDrawn": {}, "bytesReceived": {}, )"
       R"("uncoveredPixels": {}, "skirtPixels": {}, "capture": {}}})",
-      quoted(p.name), number(p.altitudeMeters), p.frames, milliseconds(p.medianMs), p.tilesDrawn, p.bytesReceived, p.uncoveredPixels,
-      p.skirtPixels, p.capture.empty() ? "null" : quoted(p.capture));
+      quoted(p.name), number(p.altitudeMeters), p.frames, milliseconds(p.medianMs), p.tilesDrawn, p.bytesReceived,
+      p.uncoveredPixels, p.skirtPixels, p.capture.empty() ? "null" : quoted(p.capture));
 }
 
 class Object {
  public:
-  void add(std::string_view key, const std::string& json) { text_ += fmt::format("{}\n  \"{}\": {}", text_.empty() ? "" : ",", key, json); }
+  void add(std::string_view key, const std::string& json) {
+    text_ += fmt::format("{}\n  \"{}\": {}", text_.empty() ? "" : ",", key, json);
+  }
   void add(std::string_view key, std::uint64_t value) { add(key, std::to_string(value)); }
   std::string text() const { return "{" + text_ + "\n}\n"; }
 
@@ -81,8 +84,9 @@ std::string array(const List& list, Format format, const char* open, const char*
 std::string statisticsJson(const RunStatistics& s) {
   Object object;
   object.add("framesDrawn", s.frameTimes.count());
-  object.add("frameMs", fmt::format(R"({{"p50": {}, "p99": {}, "max": {}}})", milliseconds(s.frameTimes.percentile(0.5)),
-                                    milliseconds(s.frameTimes.percentile(0.99)), milliseconds(s.frameTimes.longest())));
+  object.add("frameMs",
+             fmt::format(R"({{"p50": {}, "p99": {}, "max": {}}})", milliseconds(s.frameTimes.percentile(0.5)),
+                         milliseconds(s.frameTimes.percentile(0.99)), milliseconds(s.frameTimes.longest())));
   object.add("msToSettle", s.msToSettle < 0 ? "null" : milliseconds(s.msToSettle));
   object.add("tilesDrawn", s.tilesDrawn);
   object.add("trianglesDrawn", s.trianglesDrawn);
@@ -112,7 +116,9 @@ std::string statisticsJson(const RunStatistics& s) {
   object.add("linkMessage", quoted(s.stream.message));
   object.add("effects", array(s.effects, quoted, "[", "]", ", "));
   object.add("constructed",
-             array(s.constructed, [](const auto& c) { return fmt::format("{}: {}", quoted(c.first), c.second); }, "{", "}", ", "));
+             array(
+                 s.constructed, [](const auto& c) { return fmt::format("{}: {}", quoted(c.first), c.second); }, "{",
+                 "}", ", "));
   object.add("points", array(s.points, pointJson, s.points.empty() ? "[" : "[\n    ", "]", ",\n    "));
   return object.text();
 }

@@ -86,44 +86,62 @@ void declareOptions(CLI::App& app, RawOptions& raw) {
   ViewOptions& o = raw.options;
   app.add_option("--server", o.serverUrl, "Where the server is, e.g. http://127.0.0.1:8080")->type_name("URL");
   app.add_option("--body", o.body, "Which of the scene's bodies (default: the first)")->type_name("NAME");
-  app.add_option("--camera", raw.camera,
-                 "Degrees and metres above the reference sphere; heading from north clockwise (default 0), pitch 0 level, -90 "
-                 "down (default). Default: the whole body in view")
+  app.add_option(
+         "--camera", raw.camera,
+         "Degrees and metres above the reference sphere; heading from north clockwise (default 0), pitch 0 level, -90 "
+         "down (default). Default: the whole body in view")
       ->type_name("LON,LAT,ALT[,HEADING,PITCH]");
-  app.add_flag("--above-ground", o.aboveGround, "Altitudes of --camera and --flight count from the finest ground under the camera");
-  app.add_option("--flight", o.flight, "Fly this: descent (10,000 km to 0.2 m), orbit, or a file as --record writes it; built-in "
+  app.add_flag("--above-ground", o.aboveGround,
+               "Altitudes of --camera and --flight count from the finest ground under the camera");
+  app.add_option("--flight", o.flight,
+                 "Fly this: descent (10,000 km to 0.2 m), orbit, or a file as --record writes it; built-in "
                  "flights go to --camera's place")
       ->type_name("descent|orbit|FILE");
   app.add_option("--record", o.recordFile, "Write what was flown")->type_name("FILE");
   app.add_option("--size", raw.size, "Picture size in pixels")->type_name("WxH")->capture_default_str();
-  app.add_option("--fov", raw.fieldOfViewDegrees, "Vertical field of view, degrees, 1..150")->type_name("DEG")->capture_default_str();
-  app.add_option("--error", o.errorPixels, "Allowed screen-space error, pixels, 0.1..100")->type_name("PIXELS")->capture_default_str();
+  app.add_option("--fov", raw.fieldOfViewDegrees, "Vertical field of view, degrees, 1..150")
+      ->type_name("DEG")
+      ->capture_default_str();
+  app.add_option("--error", o.errorPixels, "Allowed screen-space error, pixels, 0.1..100")
+      ->type_name("PIXELS")
+      ->capture_default_str();
   app.add_option("--frame-budget", o.frameBudgetMs,
                  "Hold this frame time by raising the error, up to 16 times --error; 0 is off (default)")
       ->type_name("MS");
-  app.add_option("--placement", raw.placement,
-                 "How vertices are placed: auto (what the self-test of the GPU allows), integer, double-float, cpu, float32")
-      ->type_name("NAME")->capture_default_str();
+  app.add_option(
+         "--placement", raw.placement,
+         "How vertices are placed: auto (what the self-test of the GPU allows), integer, double-float, cpu, float32")
+      ->type_name("NAME")
+      ->capture_default_str();
   app.add_flag("--headless", o.headless, "No window, no display needed");
-  app.add_flag("--settle", o.settle, "Wait until every view is complete before it is drawn; fails when tiles do not come");
-  app.add_option("--capture", o.captureFile, "Write the last picture; with %d in the name one for each point of the flight")
+  app.add_flag("--settle", o.settle,
+               "Wait until every view is complete before it is drawn; fails when tiles do not come");
+  app.add_option("--capture", o.captureFile,
+                 "Write the last picture; with %d in the name one for each point of the flight")
       ->type_name("OUT.png");
   app.add_option("--stats", o.statsFile, "Write figures of the run")->type_name("OUT.json");
   app.add_flag("--hud", o.hud, "Show the overlay in scripted runs too");
   app.add_option("--frames", o.frames,
                  "Scripted: frames to draw (default: a flight's own number; otherwise 1, with --stats 8)")
       ->type_name("N");
-  app.add_option("--step", o.stepSeconds, "Scripted flights: seconds between frames; the flight's own points are always among them")
-      ->type_name("S")->capture_default_str();
+  app.add_option("--step", o.stepSeconds,
+                 "Scripted flights: seconds between frames; the flight's own points are always among them")
+      ->type_name("S")
+      ->capture_default_str();
   app.add_option("--time-limit", o.timeLimitSeconds, "Scripted: give up when one view is not complete after this time")
-      ->type_name("S")->capture_default_str();
+      ->type_name("S")
+      ->capture_default_str();
   app.add_option("--cache", raw.cache,
-                 "Disk cache of tiles, or none (default: $XDG_CACHE_HOME/terrane/tiles.sqlite in a window; none in scripted runs, "
+                 "Disk cache of tiles, or none (default: $XDG_CACHE_HOME/terrane/tiles.sqlite in a window; none in "
+                 "scripted runs, "
                  "so that they can be repeated)")
       ->type_name("FILE|none");
-  app.add_option("--cache-budget", raw.cacheBudget, "Most that the disk cache takes")->type_name("SIZE")->capture_default_str();
+  app.add_option("--cache-budget", raw.cacheBudget, "Most that the disk cache takes")
+      ->type_name("SIZE")
+      ->capture_default_str();
   app.add_option("--memory-budget", raw.memoryBudget, "Most that tiles in memory take, what is in view excepted")
-      ->type_name("SIZE")->capture_default_str();
+      ->type_name("SIZE")
+      ->capture_default_str();
   app.add_flag("--explain", o.explain, "Print each effect, on or off, why, and what it costs here; then leave");
 }
 
@@ -135,8 +153,10 @@ Result<std::size_t> checkRange(std::string_view flag, double value, double low, 
 Result<std::size_t> checkCapture(const ViewOptions& options) {
   const std::size_t percent = options.captureFile.find('%');
   if (percent == std::string::npos) return std::size_t{0};
-  if (options.captureFile.compare(percent, 2, "%d") != 0 || options.captureFile.find('%', percent + 1) != std::string::npos)
-    return flagError("--capture", fmt::format("\"{}\": %d may stand in the name once, and no other %", options.captureFile));
+  if (options.captureFile.compare(percent, 2, "%d") != 0 ||
+      options.captureFile.find('%', percent + 1) != std::string::npos)
+    return flagError("--capture",
+                     fmt::format("\"{}\": %d may stand in the name once, and no other %", options.captureFile));
   if (options.flight.empty()) return flagError("--capture", "%d counts the points of a flight: --flight is missing");
   return std::size_t{0};
 }
@@ -153,7 +173,8 @@ std::string defaultCacheFile(EnvironmentLookup environment) {
 
 Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   ViewOptions& o = raw.options;
-  if (o.serverUrl.empty()) return flagError("--server", "is missing: where is the server? e.g. --server http://127.0.0.1:8080");
+  if (o.serverUrl.empty())
+    return flagError("--server", "is missing: where is the server? e.g. --server http://127.0.0.1:8080");
   if (raw.camera) {
     const auto pose = parseCamera(*raw.camera);
     if (!pose) return pose.error();
@@ -167,10 +188,11 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
     if (!placement) return placement.error();
     o.placement = *placement;
   }
-  for (const auto& range : {checkRange("--fov", raw.fieldOfViewDegrees, 1, 150), checkRange("--error", o.errorPixels, 0.1, 100),
-                            checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e9),
-                            checkRange("--step", o.stepSeconds, 1e-4, 1e6),
-                            checkRange("--time-limit", o.timeLimitSeconds, 0.1, 1e6), checkCapture(o)})
+  for (const auto& range :
+       {checkRange("--fov", raw.fieldOfViewDegrees, 1, 150), checkRange("--error", o.errorPixels, 0.1, 100),
+        checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e9),
+        checkRange("--step", o.stepSeconds, 1e-4, 1e6), checkRange("--time-limit", o.timeLimitSeconds, 0.1, 1e6),
+        checkCapture(o)})
     if (!range) return range.error();
   o.verticalFieldOfView = raw.fieldOfViewDegrees * kRadiansPerDegree;
   const auto cacheBudget = parseByteSize(raw.cacheBudget, "--cache-budget");
@@ -187,7 +209,8 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   return std::move(raw.options);
 }
 
-// CLI11 words its messages "--error: Could not convert..." or names the flag at the end; here the flag is a field of its own.
+// CLI11 words its messages "--error: Could not convert..." or names the flag at the end; here the flag is a field of
+// its own.
 Error errorOf(const CLI::ParseError& error, const CLI::App& app) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     const auto extra = app.remaining();
@@ -198,7 +221,8 @@ Error errorOf(const CLI::ParseError& error, const CLI::App& app) {
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {  // "Could not convert: --error = abc"
     const std::size_t flag = message.find("--"), value = message.find(" = ");
     if (flag != std::string::npos && value != std::string::npos && value > flag)
-      return flagError(message.substr(flag, value - flag), fmt::format("\"{}\" is no number", message.substr(value + 3)));
+      return flagError(message.substr(flag, value - flag),
+                       fmt::format("\"{}\" is no number", message.substr(value + 3)));
   }
   if (message.rfind("--", 0) == 0) {
     const std::size_t end = message.find_first_of(": ");
@@ -228,7 +252,8 @@ Result<std::pair<int, int>> parseSize(std::string_view text) {
 
 Result<ViewPose> parseCamera(std::string_view text) {
   const auto wrong = [&](std::string_view why) {
-    return flagError("--camera", fmt::format("\"{}\": {} (LON,LAT,ALT[,HEADING,PITCH], degrees and metres)", text, why));
+    return flagError("--camera",
+                     fmt::format("\"{}\": {} (LON,LAT,ALT[,HEADING,PITCH], degrees and metres)", text, why));
   };
   std::array<double, 5> values{0, 0, 0, 0, -90};
   std::size_t count = 0;
@@ -247,8 +272,8 @@ Result<ViewPose> parseCamera(std::string_view text) {
   if (std::abs(values[2]) > 1e12) return wrong("the altitude is out of range: at most 1e12 m");
   if (std::abs(values[3]) > 360) return wrong("the heading is out of range: -360 to 360");
   if (std::abs(values[4]) > 90) return wrong("the pitch is out of range: -90 to 90");
-  return ViewPose{values[0] * kRadiansPerDegree, values[1] * kRadiansPerDegree, values[2], values[3] * kRadiansPerDegree,
-                  values[4] * kRadiansPerDegree};
+  return ViewPose{values[0] * kRadiansPerDegree, values[1] * kRadiansPerDegree, values[2],
+                  values[3] * kRadiansPerDegree, values[4] * kRadiansPerDegree};
 }
 
 Result<std::size_t> parseByteSize(std::string_view text, std::string_view flag) {
@@ -256,11 +281,14 @@ Result<std::size_t> parseByteSize(std::string_view text, std::string_view flag) 
   const auto number = parseNumber(text.substr(0, unitAt));
   const std::string_view unit = text.substr(unitAt);
   double scale = 0;
-  for (const auto& [name, bytes] : {std::pair{"", 1.0}, std::pair{"KiB", 1024.0}, std::pair{"MiB", 1048576.0}, std::pair{"GiB", 1073741824.0}})
+  for (const auto& [name, bytes] :
+       {std::pair{"", 1.0}, std::pair{"KiB", 1024.0}, std::pair{"MiB", 1048576.0}, std::pair{"GiB", 1073741824.0}})
     if (unit == name) scale = bytes;
-  if (!number || scale == 0) return flagError(flag, fmt::format("\"{}\" is no size: write it as 256MiB, 2GiB or in bytes", text));
+  if (!number || scale == 0)
+    return flagError(flag, fmt::format("\"{}\" is no size: write it as 256MiB, 2GiB or in bytes", text));
   const double bytes = *number * scale;
-  if (bytes < 1048576.0 || bytes > 1e15) return flagError(flag, fmt::format("\"{}\" is out of range: 1MiB to 900000GiB", text));
+  if (bytes < 1048576.0 || bytes > 1e15)
+    return flagError(flag, fmt::format("\"{}\" is out of range: 1MiB to 900000GiB", text));
   return static_cast<std::size_t>(bytes);
 }
 

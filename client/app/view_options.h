@@ -1,6 +1,6 @@
 #pragma once
-// The command line of terrane-view as plain values. Degrees and metres as a person writes them become radians and metres here.
-// No GL, no files are touched. Thread-safe.
+// The command line of terrane-view as plain values. Degrees and metres as a person writes them become radians and
+// metres here. No GL, no files are touched. Thread-safe.
 
 #include <cstddef>
 #include <optional>
@@ -17,25 +17,25 @@ namespace terrane {
 
 struct ViewOptions {
   std::string serverUrl;
-  std::string body;                  ///< empty: the scene's first
-  std::optional<ViewPose> camera;    ///< none: the whole body in view
-  bool aboveGround = false;          ///< the camera's altitude counts from the finest ground under it
-  std::string flight;                ///< "descent", "orbit", a file, or empty
+  std::string body;                ///< empty: the scene's first
+  std::optional<ViewPose> camera;  ///< none: the whole body in view
+  bool aboveGround = false;        ///< the camera's altitude counts from the finest ground under it
+  std::string flight;              ///< "descent", "orbit", a file, or empty
   std::string recordFile;
   int widthPixels = 1280, heightPixels = 720;
   double verticalFieldOfView = 0.8726646259971648;  ///< 50 degrees
   double errorPixels = 2;
-  double frameBudgetMs = 0;          ///< 0: off
-  std::optional<Placement> placement;///< none: what the self-test of the GPU chose
+  double frameBudgetMs = 0;            ///< 0: off
+  std::optional<Placement> placement;  ///< none: what the self-test of the GPU chose
   bool headless = false, settle = false, hud = false, explain = false;
-  std::string captureFile;           ///< "%d" in it: one picture for each point of the flight
+  std::string captureFile;  ///< "%d" in it: one picture for each point of the flight
   std::string statsFile;
-  std::string cacheFile;             ///< empty: no disk cache
+  std::string cacheFile;  ///< empty: no disk cache
   std::size_t cacheBudgetBytes = 512u << 20;
   std::size_t memoryBudgetBytes = 128u << 20;
-  int frames = 0;                    ///< 0: as many as it takes
-  double stepSeconds = 1.0 / 30;     ///< of a scripted flight
-  double timeLimitSeconds = 120;     ///< for one view to be complete in a scripted run
+  int frames = 0;                 ///< 0: as many as it takes
+  double stepSeconds = 1.0 / 30;  ///< of a scripted flight
+  double timeLimitSeconds = 120;  ///< for one view to be complete in a scripted run
 
   /// Runs to an end by itself, with a fixed time step, instead of following a person's hands.
   bool scripted() const { return headless || settle || explain || frames > 0 || !captureFile.empty(); }
@@ -46,15 +46,16 @@ struct OptionsText {
   std::string text;
 };
 
-/// arguments without the program's name. environment: looks up a variable, for the default cache file; empty if not set.
-/// Errors: InvalidArgument; field names the flag.
+/// arguments without the program's name. environment: looks up a variable, for the default cache file; empty if not
+/// set. Errors: InvalidArgument; field names the flag.
 using EnvironmentLookup = std::string (*)(const char* name);
 Result<std::variant<ViewOptions, OptionsText>> parseViewOptions(const std::vector<std::string>& arguments,
                                                                 EnvironmentLookup environment);
 
 /// "1280x720", each side 16..16384. Errors name "--size".
 Result<std::pair<int, int>> parseSize(std::string_view text);
-/// "LON,LAT,ALT[,HEADING[,PITCH]]" in degrees and metres; heading 0 and pitch -90 where not given. Errors name "--camera".
+/// "LON,LAT,ALT[,HEADING[,PITCH]]" in degrees and metres; heading 0 and pitch -90 where not given. Errors name
+/// "--camera".
 Result<ViewPose> parseCamera(std::string_view text);
 /// "128MiB", "2GiB", "65536"; at least 1 MiB. Errors name the flag.
 Result<std::size_t> parseByteSize(std::string_view text, std::string_view flag);

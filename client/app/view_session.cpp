@@ -97,7 +97,9 @@ Result<bool> ViewSession::ready() {
 }
 
 const SceneInfo& ViewSession::scene() const { return *state_->stream->scene(); }
-const BodyInfo& ViewSession::body() const { return scene().bodies[std::min(state_->bodyIndex, scene().bodies.size() - 1)]; }
+const BodyInfo& ViewSession::body() const {
+  return scene().bodies[std::min(state_->bodyIndex, scene().bodies.size() - 1)];
+}
 
 // Uploads what is decoded until the frame's share of bytes or time is used up.
 bool ViewSession::State::takeArrivals(const UploadBudget& budget) {
@@ -127,13 +129,14 @@ ViewPose ViewSession::State::resolved(const View& view) const {
   return result;
 }
 
-// The tiles under the camera, down to the level that its height calls for, whether it looks there or not: the ground's height
-// comes from them.
+// The tiles under the camera, down to the level that its height calls for, whether it looks there or not: the ground's
+// height comes from them.
 std::vector<WantedTile> ViewSession::State::groundChain(double errorPixels) const {
   const SelectionBody& body = stream->scene()->bodies[bodyIndex].selection;
   const glm::dvec3 direction = directionOf(pose.longitude, pose.latitude);
   const auto ground = stream->groundBelow(direction);
-  const double height = std::max(pose.altitudeMeters - (ground ? ground->heightMeters : 0.0), kLowestHeightAboveGroundMeters);
+  const double height =
+      std::max(pose.altitudeMeters - (ground ? ground->heightMeters : 0.0), kLowestHeightAboveGroundMeters);
   const double allowedMeters = errorPixels * height / pixelsPerRadian(camera);
   std::vector<WantedTile> chain;
   for (int level = 0; level <= body.maxLevel; ++level) {
@@ -145,8 +148,8 @@ std::vector<WantedTile> ViewSession::State::groundChain(double errorPixels) cons
   return chain;
 }
 
-// Asks for the selection and the ground; true when the ground's finest wanted tile is there. groundFirst: the camera's own height
-// depends on the ground, so until that is known no fine tile is asked for where the camera only seems to be.
+// Asks for the selection and the ground; true when the ground's finest wanted tile is there. groundFirst: the camera's
+// own height depends on the ground, so until that is known no fine tile is asked for where the camera only seems to be.
 bool ViewSession::State::requestTiles(double errorPixels, bool groundFirst) {
   std::vector<WantedTile> wanted = selection.wanted;
   const std::vector<WantedTile> chain = groundChain(errorPixels);
@@ -175,8 +178,8 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   const bool arrived = s.takeArrivals(budget);
   const ViewPose pose = s.resolved(view);
   const double altitudeBefore = s.pose.altitudeMeters;
-  const Camera camera = cameraFromPose(pose, body().selection.radiusMeters, s.options.verticalFieldOfView, view.widthPixels,
-                                       view.heightPixels);
+  const Camera camera = cameraFromPose(pose, body().selection.radiusMeters, s.options.verticalFieldOfView,
+                                       view.widthPixels, view.heightPixels);
   const bool moved = s.firstUpdate || camera.positionBody != s.camera.positionBody || camera.right != s.camera.right ||
                      camera.backward != s.camera.backward || camera.widthPixels != s.camera.widthPixels ||
                      camera.heightPixels != s.camera.heightPixels;
@@ -189,7 +192,8 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   } else {
     SelectionSettings settings;
     settings.errorPixels = errorPixels;
-    s.selection = selectTiles(camera, body().selection, [&s](const FacePath& path) { return s.stream->resident(path); }, settings);
+    s.selection = selectTiles(
+        camera, body().selection, [&s](const FacePath& path) { return s.stream->resident(path); }, settings);
     report.changed = moved || s.selection.draw != s.drawn;
     s.drawn = s.selection.draw;
     const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround);
@@ -226,7 +230,8 @@ std::optional<double> ViewSession::heightAboveGround() const {
 }
 
 double ViewSession::progress() const noexcept {
-  return state_->wantedCount == 0 ? 0 : 1 - static_cast<double>(state_->missing) / static_cast<double>(state_->wantedCount);
+  return state_->wantedCount == 0 ? 0
+                                  : 1 - static_cast<double>(state_->missing) / static_cast<double>(state_->wantedCount);
 }
 
 std::size_t ViewSession::missing() const noexcept { return state_->missing; }
@@ -250,7 +255,8 @@ ViewPose wholeBodyPose(const SceneInfo& scene, const BodyInfo& body, double vert
   pose.pitch = -std::numbers::pi / 2;
   for (const EffectCall& effect : scene.effects) {
     const auto longitude = effect.parameters.find("longitude"), latitude = effect.parameters.find("latitude");
-    if (effect.kind != EffectKind::Sun || longitude == effect.parameters.end() || latitude == effect.parameters.end()) continue;
+    if (effect.kind != EffectKind::Sun || longitude == effect.parameters.end() || latitude == effect.parameters.end())
+      continue;
     // West of where the sun stands overhead: there it is morning, and low light shows relief.
     pose.longitude = std::remainder(longitude->second - 62 * std::numbers::pi / 180, 2 * std::numbers::pi);
     pose.latitude = latitude->second;

@@ -1,6 +1,6 @@
 #pragma once
-// A viewer without hands or window: stream, selection and renderer, one update and at most one draw a frame. Both the scripted run
-// and the interactive one are loops around it. GL thread only.
+// A viewer without hands or window: stream, selection and renderer, one update and at most one draw a frame. Both the
+// scripted run and the interactive one are loops around it. GL thread only.
 
 #include <functional>
 #include <memory>
@@ -36,13 +36,15 @@ class ViewSession {
   static Result<std::unique_ptr<ViewSession>> open(const ViewOptions& options, std::function<void()> wake);
   ~ViewSession();
 
-  /// True once the scene is there and the renderer made; call until then, and before anything below. Errors: InvalidArgument naming
+  /// True once the scene is there and the renderer made; call until then, and before anything below. Errors:
+  /// InvalidArgument naming
   /// "--body", and what TileRenderer::create says.
   Result<bool> ready();
   const SceneInfo& scene() const;
   const BodyInfo& body() const;
 
-  /// The camera of a pose, at a picture size. aboveGround: the pose's altitude counts from the ground as far as it is known.
+  /// The camera of a pose, at a picture size. aboveGround: the pose's altitude counts from the ground as far as it is
+  /// known.
   struct View {
     ViewPose pose;
     bool aboveGround = false;
@@ -82,7 +84,8 @@ class ViewSession {
 };
 
 /// Where a viewer starts without --camera: the whole body in view, the sun to one side where the scene has one.
-ViewPose wholeBodyPose(const SceneInfo& scene, const BodyInfo& body, double verticalFieldOfView, int widthPixels, int heightPixels);
+ViewPose wholeBodyPose(const SceneInfo& scene, const BodyInfo& body, double verticalFieldOfView, int widthPixels,
+                       int heightPixels);
 
 /// "integer exact; TwoSum, TwoProd exact (precise); fma not fused": for the overlay and the figures.
 std::string selfTestText(const SelfTestReport& report);

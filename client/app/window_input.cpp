@@ -11,21 +11,33 @@ namespace {
 
 std::optional<ViewCommand> commandOf(int key) {
   switch (key) {
-    case GLFW_KEY_F1: return ViewCommand::ToggleHud;
-    case GLFW_KEY_F2: return ViewCommand::ToggleWireframe;
-    case GLFW_KEY_F3: return ViewCommand::ToggleLevelColors;
-    case GLFW_KEY_F4: return ViewCommand::ToggleFreeze;
-    case GLFW_KEY_F12: return ViewCommand::Screenshot;
-    case GLFW_KEY_TAB: return ViewCommand::ToggleMode;
-    case GLFW_KEY_HOME: return ViewCommand::Home;
-    case GLFW_KEY_P: return ViewCommand::NextPlacement;
-    case GLFW_KEY_ESCAPE: return ViewCommand::Quit;
+    case GLFW_KEY_F1:
+      return ViewCommand::ToggleHud;
+    case GLFW_KEY_F2:
+      return ViewCommand::ToggleWireframe;
+    case GLFW_KEY_F3:
+      return ViewCommand::ToggleLevelColors;
+    case GLFW_KEY_F4:
+      return ViewCommand::ToggleFreeze;
+    case GLFW_KEY_F12:
+      return ViewCommand::Screenshot;
+    case GLFW_KEY_TAB:
+      return ViewCommand::ToggleMode;
+    case GLFW_KEY_HOME:
+      return ViewCommand::Home;
+    case GLFW_KEY_P:
+      return ViewCommand::NextPlacement;
+    case GLFW_KEY_ESCAPE:
+      return ViewCommand::Quit;
     // The same physical key writes + or = on most layouts.
     case GLFW_KEY_EQUAL:
-    case GLFW_KEY_KP_ADD: return ViewCommand::LessDetail;
+    case GLFW_KEY_KP_ADD:
+      return ViewCommand::LessDetail;
     case GLFW_KEY_MINUS:
-    case GLFW_KEY_KP_SUBTRACT: return ViewCommand::MoreDetail;
-    default: return std::nullopt;
+    case GLFW_KEY_KP_SUBTRACT:
+      return ViewCommand::MoreDetail;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -69,7 +81,9 @@ ControlInput WindowInput::take(double seconds) {
   glfwGetFramebufferSize(window_, &width, &height);
   const double scale = windowWidth > 0 ? static_cast<double>(width) / windowWidth : 1;
   const auto down = [&](int key) { return glfwGetKey(window_, key) == GLFW_PRESS; };
-  const auto axis = [&](int positive, int negative) { return (down(positive) ? 1.0 : 0.0) - (down(negative) ? 1.0 : 0.0); };
+  const auto axis = [&](int positive, int negative) {
+    return (down(positive) ? 1.0 : 0.0) - (down(negative) ? 1.0 : 0.0);
+  };
   ControlInput input;
   input.seconds = seconds;
   input.cursorPixels = cursor_ * scale;

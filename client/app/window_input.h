@@ -1,6 +1,6 @@
 #pragma once
-// What a person does to the window, gathered between two frames from GLFW's callbacks: hands for CameraControls, and commands. GL
-// thread only; one a window (it takes the window's user pointer).
+// What a person does to the window, gathered between two frames from GLFW's callbacks: hands for CameraControls, and
+// commands. GL thread only; one a window (it takes the window's user pointer).
 
 #include <glm/vec2.hpp>
 #include <vector>

@@ -9,8 +9,8 @@ namespace terrane {
 namespace {
 
 constexpr double kHalfPi = std::numbers::pi / 2;
-constexpr double kZoomPerStep = 0.22;          // a wheel step changes the height by a factor e^0.22 = 1.25
-constexpr double kZoomSeconds = 0.12;          // time constants of the smoothing
+constexpr double kZoomPerStep = 0.22;  // a wheel step changes the height by a factor e^0.22 = 1.25
+constexpr double kZoomSeconds = 0.12;  // time constants of the smoothing
 constexpr double kVelocitySeconds = 0.18;
 constexpr double kSpinSeconds = 0.30;
 constexpr double kLongestStepSeconds = 0.1;
@@ -32,7 +32,8 @@ struct Grab {
 };
 
 // The sphere through the ground below the camera; a ray that passes it by grabs the point where it comes nearest.
-std::optional<Grab> grab(const Camera& camera, const glm::dvec2& cursorPixels, double sphereMeters, double heightMeters) {
+std::optional<Grab> grab(const Camera& camera, const glm::dvec2& cursorPixels, double sphereMeters,
+                         double heightMeters) {
   const double tangent = std::tan(camera.verticalFieldOfView / 2);
   const double x = (2 * cursorPixels.x / camera.widthPixels - 1) * tangent * camera.widthPixels / camera.heightPixels;
   const double y = (1 - 2 * cursorPixels.y / camera.heightPixels) * tangent;
@@ -42,14 +43,16 @@ std::optional<Grab> grab(const Camera& camera, const glm::dvec2& cursorPixels, d
   if (along >= 0) return std::nullopt;
   const double discriminant = along * along - heightMeters * (2 * sphereMeters + heightMeters);
   // The nearer root in the form that does not cancel close to the ground.
-  const double distance = discriminant > 0 ? heightMeters * (2 * sphereMeters + heightMeters) / (-along + std::sqrt(discriminant))
-                                           : -along;
+  const double distance =
+      discriminant > 0 ? heightMeters * (2 * sphereMeters + heightMeters) / (-along + std::sqrt(discriminant)) : -along;
   return Grab{glm::normalize(position + ray * distance), distance};
 }
 
 }  // namespace
 
-std::string_view controlModeName(ControlMode mode) noexcept { return mode == ControlMode::Orbit ? "orbit" : "free flight"; }
+std::string_view controlModeName(ControlMode mode) noexcept {
+  return mode == ControlMode::Orbit ? "orbit" : "free flight";
+}
 
 glm::dvec3 directionOf(double longitude, double latitude) noexcept {
   const double c = std::cos(latitude);
@@ -111,7 +114,8 @@ ViewPose CameraControls::advance(const ControlInput& input, const ControlView& v
   return pose_;
 }
 
-void CameraControls::drag(const ControlInput& input, const ControlView& view, double heightAboveGround, double groundMeters) {
+void CameraControls::drag(const ControlInput& input, const ControlView& view, double heightAboveGround,
+                          double groundMeters) {
   if (input.cursorMovePixels == glm::dvec2(0.0)) {
     if (input.seconds > 0) spinPerSecond_ = glm::dvec3(0.0);  // held still: nothing is thrown
     return;

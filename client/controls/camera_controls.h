@@ -1,8 +1,11 @@
 #pragma once
-// How a person's hands move the camera: two modes over a round body, free of any window system, so that they can be tested.
-//   Orbit    a drag turns the body under the cursor (the grabbed point stays under it), the wheel changes the height above ground by
+// How a person's hands move the camera: two modes over a round body, free of any window system, so that they can be
+// tested.
+//   Orbit    a drag turns the body under the cursor (the grabbed point stays under it), the wheel changes the height
+//   above ground by
 //            a factor, the secondary button tilts and turns the view
-//   FreeFly  move keys fly level with the ground or up and down, any drag looks around; the speed follows the height above ground
+//   FreeFly  move keys fly level with the ground or up and down, any drag looks around; the speed follows the height
+//   above ground
 // All motion is smoothed: zoom and velocity approach their targets exponentially, a thrown body spins on for a moment.
 // Body frame, metres, radians, seconds, pixels from the top left corner. One thread.
 
@@ -28,9 +31,9 @@ struct ControlInput {
   double seconds = 0;  ///< since the last call; longer than 0.1 s counts as 0.1 s, so that a hitch is no leap
   glm::dvec2 cursorPixels{0.0}, cursorMovePixels{0.0};
   bool primaryButton = false, secondaryButton = false;
-  double wheelSteps = 0;    ///< away from the person is positive: nearer to the ground
-  glm::dvec3 move{0.0};     ///< right, up, forward, each -1..1
-  double speedFactor = 1;   ///< 4 with the fast key, 0.25 with the slow one
+  double wheelSteps = 0;   ///< away from the person is positive: nearer to the ground
+  glm::dvec3 move{0.0};    ///< right, up, forward, each -1..1
+  double speedFactor = 1;  ///< 4 with the fast key, 0.25 with the slow one
 };
 
 /// The picture that the cursor moves over.
@@ -47,7 +50,8 @@ class CameraControls {
  public:
   explicit CameraControls(const ViewPose& home) : home_(home), pose_(home) {}
 
-  /// One frame. The result is finite, at least kLowestHeightAboveGroundMeters above known ground and at most 60 radii high.
+  /// One frame. The result is finite, at least kLowestHeightAboveGroundMeters above known ground and at most 60 radii
+  /// high.
   ViewPose advance(const ControlInput& input, const ControlView& view, const GroundHeight& ground);
 
   const ViewPose& pose() const noexcept { return pose_; }
@@ -73,9 +77,9 @@ class CameraControls {
 
   ViewPose home_, pose_;
   ControlMode mode_ = ControlMode::Orbit;
-  double pendingZoom_ = 0;            ///< natural logarithm of the height factor still to be applied
-  glm::dvec3 spinPerSecond_{0.0};     ///< rotation vector of the camera about the body's centre, radians a second
-  glm::dvec3 velocity_{0.0};          ///< right, up, forward, in units of the free speed
+  double pendingZoom_ = 0;         ///< natural logarithm of the height factor still to be applied
+  glm::dvec3 spinPerSecond_{0.0};  ///< rotation vector of the camera about the body's centre, radians a second
+  glm::dvec3 velocity_{0.0};       ///< right, up, forward, in units of the free speed
   double speedMetersPerSecond_ = 0;
 };
 

@@ -6,8 +6,8 @@
 namespace terrane {
 namespace {
 
-// Frame time falls at most with the square of the error, so one step of kGentle changes it by at most 1.21, less than the band's
-// width of 1.05 / 0.75 = 1.4: from inside the band no step is taken, and no step leaps over it.
+// Frame time falls at most with the square of the error, so one step of kGentle changes it by at most 1.21, less than
+// the band's width of 1.05 / 0.75 = 1.4: from inside the band no step is taken, and no step leaps over it.
 constexpr double kTooSlow = 1.05, kRoomLeft = 0.75;
 constexpr double kGentle = 1.1, kSteep = 1.5;
 

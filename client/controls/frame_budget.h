@@ -1,7 +1,7 @@
 #pragma once
-// Holds a frame time by trading detail: raises the allowed screen-space error while frames take too long and lowers it again when
-// there is room, between the error that was asked for and kWorstFactor times it. A dead band wider than one step's effect keeps it
-// from swinging. Deterministic: a function of the frame times alone. One thread.
+// Holds a frame time by trading detail: raises the allowed screen-space error while frames take too long and lowers it
+// again when there is room, between the error that was asked for and kWorstFactor times it. A dead band wider than one
+// step's effect keeps it from swinging. Deterministic: a function of the frame times alone. One thread.
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,8 @@ class FrameBudget {
   static constexpr double kWorstFactor = 16;
 
   /// budgetMs <= 0: no budget, the error stays as asked.
-  FrameBudget(double budgetMs, double errorPixels) noexcept : budgetMs_(budgetMs), asked_(errorPixels), current_(errorPixels) {}
+  FrameBudget(double budgetMs, double errorPixels) noexcept
+      : budgetMs_(budgetMs), asked_(errorPixels), current_(errorPixels) {}
 
   /// Takes a frame's time; returns the error for the next frame, in pixels.
   double frame(double milliseconds) noexcept;

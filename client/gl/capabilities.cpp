@@ -12,12 +12,18 @@ std::string glText(GLenum name) {
 
 const char* errorName(GLenum error) {
   switch (error) {
-    case GL_INVALID_ENUM: return "INVALID_ENUM";
-    case GL_INVALID_VALUE: return "INVALID_VALUE";
-    case GL_INVALID_OPERATION: return "INVALID_OPERATION";
-    case GL_INVALID_FRAMEBUFFER_OPERATION: return "INVALID_FRAMEBUFFER_OPERATION";
-    case GL_OUT_OF_MEMORY: return "OUT_OF_MEMORY";
-    default: return "unknown error";
+    case GL_INVALID_ENUM:
+      return "INVALID_ENUM";
+    case GL_INVALID_VALUE:
+      return "INVALID_VALUE";
+    case GL_INVALID_OPERATION:
+      return "INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "INVALID_FRAMEBUFFER_OPERATION";
+    case GL_OUT_OF_MEMORY:
+      return "OUT_OF_MEMORY";
+    default:
+      return "unknown error";
   }
 }
 

@@ -6,10 +6,10 @@
 namespace terrane::gl {
 
 struct Capabilities {
-  int version = 33;          ///< 10 * major + minor
-  int shadingLanguage = 330; ///< the #version that programs are compiled with
-  bool clipControl = false;  ///< depth 0..1, for reversed depth without loss
-  bool precise = false;      ///< the shading language has the qualifier that forbids rewriting floating-point expressions
+  int version = 33;           ///< 10 * major + minor
+  int shadingLanguage = 330;  ///< the #version that programs are compiled with
+  bool clipControl = false;   ///< depth 0..1, for reversed depth without loss
+  bool precise = false;  ///< the shading language has the qualifier that forbids rewriting floating-point expressions
   bool preciseByExtension = false;
   std::string renderer, versionText;
 };

@@ -36,8 +36,8 @@ Image readFramebuffer(int width, int height) {
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bottomFirst.data());
   for (std::size_t row = 0; row < static_cast<std::size_t>(height); ++row) {
-    std::memcpy(image.rgb.data() + row * rowBytes, bottomFirst.data() + (static_cast<std::size_t>(height) - 1 - row) * rowBytes,
-                rowBytes);
+    std::memcpy(image.rgb.data() + row * rowBytes,
+                bottomFirst.data() + (static_cast<std::size_t>(height) - 1 - row) * rowBytes, rowBytes);
   }
   return image;
 }
@@ -73,8 +73,8 @@ Result<Image> readPng(const std::string& file) {
 
   Image image;
   int channels = 0;
-  stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()),
-                                          &image.width, &image.height, &channels, 3);
+  stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
+                                          static_cast<int>(bytes.size()), &image.width, &image.height, &channels, 3);
   if (pixels == nullptr) return makeError(ErrorKind::Malformed, file, stbi_failure_reason());
   image.rgb.assign(pixels, pixels + static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
   stbi_image_free(pixels);

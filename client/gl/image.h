@@ -14,7 +14,7 @@ struct Image {
   std::vector<std::uint8_t> rgb;
 };
 
-Image readFramebuffer(int width, int height);                  ///< GL thread
+Image readFramebuffer(int width, int height);                               ///< GL thread
 Result<std::size_t> writePng(const Image& image, const std::string& file);  ///< bytes written
 Result<Image> readPng(const std::string& file);
 /// Root mean square difference over all channels, 0..255. Precondition: equal sizes.

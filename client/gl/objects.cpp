@@ -7,29 +7,40 @@ namespace {
 
 GLenum glTarget(BufferTarget target) {
   switch (target) {
-    case BufferTarget::Vertices: return GL_ARRAY_BUFFER;
-    case BufferTarget::Indices: return GL_ELEMENT_ARRAY_BUFFER;
-    case BufferTarget::Feedback: return GL_TRANSFORM_FEEDBACK_BUFFER;
+    case BufferTarget::Vertices:
+      return GL_ARRAY_BUFFER;
+    case BufferTarget::Indices:
+      return GL_ELEMENT_ARRAY_BUFFER;
+    case BufferTarget::Feedback:
+      return GL_TRANSFORM_FEEDBACK_BUFFER;
   }
   return GL_ARRAY_BUFFER;
 }
 
 GLenum glUse(BufferUse use) {
   switch (use) {
-    case BufferUse::Static: return GL_STATIC_DRAW;
-    case BufferUse::Stream: return GL_STREAM_DRAW;
-    case BufferUse::ReadBack: return GL_STREAM_READ;
+    case BufferUse::Static:
+      return GL_STATIC_DRAW;
+    case BufferUse::Stream:
+      return GL_STREAM_DRAW;
+    case BufferUse::ReadBack:
+      return GL_STREAM_READ;
   }
   return GL_STATIC_DRAW;
 }
 
 GLenum glType(Component type) {
   switch (type) {
-    case Component::U8: return GL_UNSIGNED_BYTE;
-    case Component::U16: return GL_UNSIGNED_SHORT;
-    case Component::I16: return GL_SHORT;
-    case Component::I32: return GL_INT;
-    case Component::F32: return GL_FLOAT;
+    case Component::U8:
+      return GL_UNSIGNED_BYTE;
+    case Component::U16:
+      return GL_UNSIGNED_SHORT;
+    case Component::I16:
+      return GL_SHORT;
+    case Component::I32:
+      return GL_INT;
+    case Component::F32:
+      return GL_FLOAT;
   }
   return GL_FLOAT;
 }
@@ -38,12 +49,24 @@ GLenum glType(Component type) {
 
 void deleteObject(ObjectKind kind, unsigned id) noexcept {
   switch (kind) {
-    case ObjectKind::Buffer: glDeleteBuffers(1, &id); break;
-    case ObjectKind::VertexArray: glDeleteVertexArrays(1, &id); break;
-    case ObjectKind::Framebuffer: glDeleteFramebuffers(1, &id); break;
-    case ObjectKind::Renderbuffer: glDeleteRenderbuffers(1, &id); break;
-    case ObjectKind::Program: glDeleteProgram(id); break;
-    case ObjectKind::Shader: glDeleteShader(id); break;
+    case ObjectKind::Buffer:
+      glDeleteBuffers(1, &id);
+      break;
+    case ObjectKind::VertexArray:
+      glDeleteVertexArrays(1, &id);
+      break;
+    case ObjectKind::Framebuffer:
+      glDeleteFramebuffers(1, &id);
+      break;
+    case ObjectKind::Renderbuffer:
+      glDeleteRenderbuffers(1, &id);
+      break;
+    case ObjectKind::Program:
+      glDeleteProgram(id);
+      break;
+    case ObjectKind::Shader:
+      glDeleteShader(id);
+      break;
   }
 }
 
@@ -67,7 +90,8 @@ void Buffer::allocate(BufferTarget target, std::size_t bytes, BufferUse use) {
 
 void Buffer::read(std::size_t offset, std::span<std::byte> out) const {
   glBindBuffer(GL_COPY_READ_BUFFER, handle_.id());
-  glGetBufferSubData(GL_COPY_READ_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(out.size()), out.data());
+  glGetBufferSubData(GL_COPY_READ_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(out.size()),
+                     out.data());
 }
 
 void Buffer::bind(BufferTarget target) const { glBindBuffer(glTarget(target), handle_.id()); }
@@ -95,7 +119,8 @@ void VertexArray::attach(const Buffer& vertices, std::size_t stride, std::span<c
       glVertexAttribIPointer(attribute.location, attribute.components, glType(attribute.type), glStride, offset);
     } else {
       const GLboolean normalized = attribute.conversion == Conversion::Normalized ? GL_TRUE : GL_FALSE;
-      glVertexAttribPointer(attribute.location, attribute.components, glType(attribute.type), normalized, glStride, offset);
+      glVertexAttribPointer(attribute.location, attribute.components, glType(attribute.type), normalized, glStride,
+                            offset);
     }
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
-// OpenGL objects as owning C++ values: move-only, freed with their owner, ids never leave this folder. GL thread only; a context must
-// be current when one is made, used and destroyed (so everything that owns one goes before the Window does).
+// OpenGL objects as owning C++ values: move-only, freed with their owner, ids never leave this folder. GL thread only;
+// a context must be current when one is made, used and destroyed (so everything that owns one goes before the Window
+// does).
 
 #include <cstddef>
 #include <cstdint>

@@ -35,7 +35,8 @@ Result<RenderTarget> RenderTarget::create(int widthPixels, int heightPixels, Tar
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(previous));
   if (status != GL_FRAMEBUFFER_COMPLETE) {
-    return makeError(ErrorKind::Unsupported, "framebuffer", fmt::format("the driver refuses it (status {:#x})", status));
+    return makeError(ErrorKind::Unsupported, "framebuffer",
+                     fmt::format("the driver refuses it (status {:#x})", status));
   }
   return target;
 }

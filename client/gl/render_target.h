@@ -1,6 +1,6 @@
 #pragma once
-// An offscreen framebuffer of exact size: colour of 8 bits a channel and a 32-bit float depth buffer, without which reversed depth
-// would be worth nothing (a window's own depth buffer has 24 fixed bits). GL thread only.
+// An offscreen framebuffer of exact size: colour of 8 bits a channel and a 32-bit float depth buffer, without which
+// reversed depth would be worth nothing (a window's own depth buffer has 24 fixed bits). GL thread only.
 
 #include <cstdint>
 #include <vector>

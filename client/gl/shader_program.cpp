@@ -14,7 +14,8 @@ Error shaderError(std::string_view file, std::string_view log) {
   return makeError(ErrorKind::Unsupported, "shader", fmt::format("{}: {}", file, log));
 }
 
-/// Appends a file with its #include lines replaced. The files are the project's own, so a line either starts with #include or not.
+/// Appends a file with its #include lines replaced. The files are the project's own, so a line either starts with
+/// #include or not.
 bool appendSource(std::string_view fileName, int depth, std::string& out) {
   std::string_view source = shaderSource(fileName);
   if (source.empty() || depth > kMaxIncludeDepth) return false;
@@ -76,8 +77,8 @@ Result<Program> Program::build(const ProgramSpec& spec, const Capabilities& capa
     glAttachShader(program.id(), fragment.id());
   }
   if (!spec.feedbackVaryings.empty()) {
-    glTransformFeedbackVaryings(program.id(), static_cast<GLsizei>(spec.feedbackVaryings.size()), spec.feedbackVaryings.data(),
-                                GL_INTERLEAVED_ATTRIBS);
+    glTransformFeedbackVaryings(program.id(), static_cast<GLsizei>(spec.feedbackVaryings.size()),
+                                spec.feedbackVaryings.data(), GL_INTERLEAVED_ATTRIBS);
   }
   glLinkProgram(program.id());
   GLint linked = GL_FALSE;

@@ -25,15 +25,15 @@ struct Uniform {
 
 struct ProgramSpec {
   std::string_view vertexFile;
-  std::string_view fragmentFile;             ///< empty: vertices only (transform feedback)
-  std::vector<std::string> defines;          ///< "NAME" or "NAME value"
-  std::vector<const char*> feedbackVaryings; ///< captured, interleaved
+  std::string_view fragmentFile;              ///< empty: vertices only (transform feedback)
+  std::vector<std::string> defines;           ///< "NAME" or "NAME value"
+  std::vector<const char*> feedbackVaryings;  ///< captured, interleaved
 };
 
 class Program {
  public:
-  /// Every file sees PRECISE (the qualifier, or nothing where the language lacks it) and the defines. #include "file" works.
-  /// Errors: Unsupported ("shader", with the driver's log).
+  /// Every file sees PRECISE (the qualifier, or nothing where the language lacks it) and the defines. #include "file"
+  /// works. Errors: Unsupported ("shader", with the driver's log).
   static Result<Program> build(const ProgramSpec& spec, const Capabilities& capabilities);
 
   void use() const;

@@ -104,8 +104,9 @@ Result<VirtualDisplay> VirtualDisplay::start(int widthPixels, int heightPixels) 
   Pipe display, failure;
   if (!display.open() || !failure.open()) return displayError(fmt::format("no pipe: {}", std::strerror(errno)));
 
-  std::string program = "Xvfb", displayFlag = "-displayfd", displayValue = std::to_string(display.writeEnd), screen = "-screen",
-              number = "0", size = fmt::format("{}x{}x24", std::max(widthPixels, 64), std::max(heightPixels, 64)),
+  std::string program = "Xvfb", displayFlag = "-displayfd", displayValue = std::to_string(display.writeEnd),
+              screen = "-screen", number = "0",
+              size = fmt::format("{}x{}x24", std::max(widthPixels, 64), std::max(heightPixels, 64)),
               closed = "-nolisten", protocol = "tcp", stay = "-noreset";
   char* const arguments[] = {program.data(), displayFlag.data(), displayValue.data(), screen.data(), number.data(),
                              size.data(),    closed.data(),      protocol.data(),     stay.data(),   nullptr};
@@ -123,8 +124,9 @@ Result<VirtualDisplay> VirtualDisplay::start(int widthPixels, int heightPixels) 
   } while (count < 0 && errno == EINTR);
   if (count == sizeof reason) {
     waitpid(process, nullptr, 0);
-    return displayError(reason == ENOENT ? "no DISPLAY and Xvfb is not installed"
-                                         : fmt::format("no DISPLAY and Xvfb does not start: {}", std::strerror(reason)));
+    return displayError(reason == ENOENT
+                            ? "no DISPLAY and Xvfb is not installed"
+                            : fmt::format("no DISPLAY and Xvfb does not start: {}", std::strerror(reason)));
   }
   std::string line = readLine(display.readEnd, Clock::now() + kStartLimit);
   if (line.empty() || line.back() != '\n') {

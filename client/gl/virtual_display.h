@@ -1,6 +1,7 @@
 #pragma once
-// A virtual X display (Xvfb) as a child process, for drawing where there is no display. It ends with this object, and with this
-// process however that ends: the kernel signals it when the thread that started it is gone, so start it on the main thread.
+// A virtual X display (Xvfb) as a child process, for drawing where there is no display. It ends with this object, and
+// with this process however that ends: the kernel signals it when the thread that started it is gone, so start it on
+// the main thread.
 
 #include <sys/types.h>
 

@@ -1,6 +1,7 @@
 #pragma once
-// A GLFW window with a GL core context (4.5 where there is one, at least 3.3), visible or headless. One a process; GL thread only.
-// Headless needs nothing of the user: where there is no display, a virtual one (Xvfb) is started as a child and ended with the window.
+// A GLFW window with a GL core context (4.5 where there is one, at least 3.3), visible or headless. One a process; GL
+// thread only. Headless needs nothing of the user: where there is no display, a virtual one (Xvfb) is started as a
+// child and ended with the window.
 
 #include <array>
 #include <functional>

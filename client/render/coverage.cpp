@@ -8,8 +8,8 @@
 namespace terrane {
 namespace {
 
-/// Does a ray from the camera meet a sphere around the body's centre? With the camera's height over that sphere as its own
-/// quantity: |c|^2 - r^2 = h (2 r + h) keeps its digits a millimetre above it.
+/// Does a ray from the camera meet a sphere around the body's centre? With the camera's height over that sphere as its
+/// own quantity: |c|^2 - r^2 = h (2 r + h) keeps its digits a millimetre above it.
 class SphereTest {
  public:
   SphereTest(const Camera& camera, double radiusMeters) : camera_(camera.positionBody) {
@@ -34,7 +34,8 @@ class SphereTest {
 
 }  // namespace
 
-CoverageCount countCoveragePixels(const Camera& camera, std::span<const std::uint8_t> pixels, double lowestRadiusMeters) {
+CoverageCount countCoveragePixels(const Camera& camera, std::span<const std::uint8_t> pixels,
+                                  double lowestRadiusMeters) {
   const SphereTest sphere(camera, lowestRadiusMeters);
   const double halfHeight = std::tan(0.5 * camera.verticalFieldOfView);
   const double perPixel = 2 * halfHeight / camera.heightPixels;

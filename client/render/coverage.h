@@ -1,6 +1,6 @@
 #pragma once
-// Which background pixels should not be there: those whose ray meets the body's lowest sphere, over which a watertight surface
-// leaves nothing open. Pure function of its arguments, double precision, thread-safe.
+// Which background pixels should not be there: those whose ray meets the body's lowest sphere, over which a watertight
+// surface leaves nothing open. Pure function of its arguments, double precision, thread-safe.
 
 #include <cstdint>
 #include <span>
@@ -15,8 +15,9 @@ inline constexpr std::uint8_t kCoverageSurface = 255;
 
 struct CoverageCount;
 
-/// pixels: the pass's red channel, bottom row first, camera.widthPixels * camera.heightPixels of them. Anything but None and
-/// Surface is a skirt.
-CoverageCount countCoveragePixels(const Camera& camera, std::span<const std::uint8_t> pixels, double lowestRadiusMeters);
+/// pixels: the pass's red channel, bottom row first, camera.widthPixels * camera.heightPixels of them. Anything but
+/// None and Surface is a skirt.
+CoverageCount countCoveragePixels(const Camera& camera, std::span<const std::uint8_t> pixels,
+                                  double lowestRadiusMeters);
 
 }  // namespace terrane

@@ -1,6 +1,7 @@
 #pragma once
-// Makes the client's effects: what a scene names, and nothing else. An effect adds a #define to the shaded tile shader and sets its
-// uniforms. To add one: a class in a file of its own, a row in effect_factories.cpp (a missing row does not compile). GL thread only.
+// Makes the client's effects: what a scene names, and nothing else. An effect adds a #define to the shaded tile shader
+// and sets its uniforms. To add one: a class in a file of its own, a row in effect_factories.cpp (a missing row does
+// not compile). GL thread only.
 
 #include <memory>
 #include <string_view>

@@ -39,7 +39,9 @@ std::vector<Input> makeInputs() {
   std::uniform_real_distribution<float> mantissa(1.0f, 2.0f);
   std::uniform_int_distribution<int> exponent(-20, 20), sign(0, 1), offset(0, kTileOffsetMax);
   std::uniform_int_distribution<std::int32_t> origin(-(1 << 30), 1 << 30);
-  const auto number = [&] { return std::ldexp(sign(random) != 0 ? mantissa(random) : -mantissa(random), exponent(random)); };
+  const auto number = [&] {
+    return std::ldexp(sign(random) != 0 ? mantissa(random) : -mantissa(random), exponent(random));
+  };
   std::vector<Input> inputs(kCases);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     Input& input = inputs[i];
@@ -52,7 +54,8 @@ std::vector<Input> makeInputs() {
   return inputs;
 }
 
-Result<std::vector<Output>> runOnGpu(const std::vector<Input>& inputs, const gl::Capabilities& capabilities, bool qualified) {
+Result<std::vector<Output>> runOnGpu(const std::vector<Input>& inputs, const gl::Capabilities& capabilities,
+                                     bool qualified) {
   std::vector<std::string> defines;
   if (!qualified) defines.emplace_back("UNQUALIFIED");
   auto program = gl::Program::build({.vertexFile = "self_test.vert.glsl",
@@ -85,8 +88,8 @@ Result<std::vector<Output>> runOnGpu(const std::vector<Input>& inputs, const gl:
   return outputs;
 }
 
-/// Within one unit in the last place of the correctly rounded value, and exact where a float can hold the integer: what placement
-/// needs (the language does not promise how larger integers round).
+/// Within one unit in the last place of the correctly rounded value, and exact where a float can hold the integer: what
+/// placement needs (the language does not promise how larger integers round).
 bool convertedWell(std::int32_t integer, float converted) {
   const auto nearest = static_cast<float>(integer);
   if (std::abs(integer) <= 1 << 24) return converted == nearest;
@@ -109,11 +112,12 @@ Result<SelfTestReport> runGpuSelfTest(const gl::Capabilities& capabilities) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Input& in = inputs[i];
     const Output &out = (*outputs)[i], &plain = (*plainOutputs)[i];
-    // a + b has at most 65 bits here, a * b 48: the sum's error is the exact remainder of Knuth's algorithm on the CPU, the product's
-    // is exact in double.
+    // a + b has at most 65 bits here, a * b 48: the sum's error is the exact remainder of Knuth's algorithm on the CPU,
+    // the product's is exact in double.
     const float sum = in.a + in.b, bPart = sum - in.a, sumError = (in.a - (sum - bPart)) + (in.b - bPart);
     const float product = in.a * in.b;
-    const auto productError = static_cast<float>(static_cast<double>(in.a) * static_cast<double>(in.b) - static_cast<double>(product));
+    const auto productError =
+        static_cast<float>(static_cast<double>(in.a) * static_cast<double>(in.b) - static_cast<double>(product));
     const std::int32_t integer = in.origin + in.offset[0];
 
     report.twoSumExact &= out.sumHigh == sum && out.sumLow == sumError;
@@ -124,7 +128,9 @@ Result<SelfTestReport> runGpuSelfTest(const gl::Capabilities& capabilities) {
                            std::bit_cast<float>(out.convertedBits) == out.converted &&
                            out.difference == out.converted - in.a;
   }
-  report.chosen = report.integerExact ? Placement::Integer : report.twoSumExact ? Placement::DoubleFloat : Placement::Cpu;
+  report.chosen = report.integerExact  ? Placement::Integer
+                  : report.twoSumExact ? Placement::DoubleFloat
+                                       : Placement::Cpu;
   return report;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// What this GPU's (or its driver's) arithmetic really does, found by running it: whether integers add and convert exactly, and
-// whether the error-free transformations of double-float survive the compiler. The values come from vertex attributes and are
-// captured by transform feedback. GL thread only.
+// What this GPU's (or its driver's) arithmetic really does, found by running it: whether integers add and convert
+// exactly, and whether the error-free transformations of double-float survive the compiler. The values come from vertex
+// attributes and are captured by transform feedback. GL thread only.
 
 #include "client/gl/capabilities.h"
 #include "client/render/tile_renderer.h"

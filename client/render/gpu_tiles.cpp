@@ -13,8 +13,16 @@ namespace {
 /// Reflectance byte of a body of one colour.
 constexpr std::uint8_t kPlainColor = 96;
 
-/// Cells on a side of the blocks in which triangles are drawn: 14 x 14 vertices then fit the 256 entries of the vertex cache of
-/// software GL (and any GPU's), so that few vertices are shaded twice. In Draco's order of decoding many are.
+/// From a byte of the wire (linear) to one of the GPU (the display's curve).
+std::array<std::uint8_t, 256> makeDisplayBytes() {
+  std::array<std::uint8_t, 256> bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<std::uint8_t>(std::lround(255 * std::pow(static_cast<double>(i) / 255, 1 / kDisplayGamma)));
+  return bytes;
+}
+
+/// Cells on a side of the blocks in which triangles are drawn: 14 x 14 vertices then fit the 256 entries of the vertex
+/// cache of software GL (and any GPU's), so that few vertices are shaded twice. In Draco's order of decoding many are.
 constexpr int kBlockCells = 13;
 
 constexpr unsigned kPositionLocation = 0, kNormalLocation = 1, kColorLocation = 2, kRelativeLocation = 3;
@@ -28,11 +36,14 @@ constexpr std::array kRelativeAttributes{
     gl::VertexAttribute{kRelativeLocation, 3, Component::F32, Conversion::Float, 0},
 };
 
-int surfaceVertexCount(const TileMetadata& metadata) { return (metadata.cellsPerEdge + 1) * (metadata.cellsPerEdge + 1); }
+int surfaceVertexCount(const TileMetadata& metadata) {
+  return (metadata.cellsPerEdge + 1) * (metadata.cellsPerEdge + 1);
+}
 
 std::vector<GpuVertex> packVertices(const Tile& tile) {
   const TileMesh& mesh = tile.mesh;
   const int surface = surfaceVertexCount(tile.metadata);
+  static const std::array<std::uint8_t, 256> displayBytes = makeDisplayBytes();
   std::vector<GpuVertex> vertices(mesh.vertexCount());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     GpuVertex& vertex = vertices[i];
@@ -40,7 +51,7 @@ std::vector<GpuVertex> packVertices(const Tile& tile) {
       vertex.offset[c] = mesh.offsets[3 * i + c];
       const float normal = std::clamp(mesh.normals[3 * i + c], -1.0f, 1.0f);
       vertex.normal[c] = static_cast<std::int16_t>(std::lround(normal * 32767.0f));
-      vertex.color[c] = mesh.colors.empty() ? kPlainColor : mesh.colors[3 * i + c];
+      vertex.color[c] = displayBytes[mesh.colors.empty() ? kPlainColor : mesh.colors[3 * i + c]];
     }
     vertex.skirt = mesh.gridIndices[i] >= surface ? 1 : 0;
   }
@@ -90,7 +101,8 @@ void GpuTile::placeOnCpu(const glm::dvec3& cameraBody, std::vector<float>& scrat
     std::vector<GpuVertex> held(vertexCount);
     vertices.read(0, std::as_writable_bytes(std::span(held)));
     offsets.resize(3 * vertexCount);
-    for (std::size_t i = 0; i < vertexCount; ++i) std::ranges::copy(held[i].offset, offsets.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    for (std::size_t i = 0; i < vertexCount; ++i)
+      std::ranges::copy(held[i].offset, offsets.begin() + static_cast<std::ptrdiff_t>(3 * i));
     relativePositions = std::make_unique<gl::Buffer>();
     relativeArray = std::make_unique<gl::VertexArray>();
     relativeArray->attach(vertices, sizeof(GpuVertex), std::span(kAttributes).subspan(1));

@@ -1,7 +1,9 @@
 #pragma once
-// The tiles on the GPU: one interleaved vertex buffer a tile, and index buffers that tiles of equal connectivity share. GL thread only.
+// The tiles on the GPU: one interleaved vertex buffer a tile, and index buffers that tiles of equal connectivity share.
+// GL thread only.
 //
-// Nothing of a tile stays in main memory but its metadata; a placement that needs the offsets on the CPU reads them back once.
+// Nothing of a tile stays in main memory but its metadata; a placement that needs the offsets on the CPU reads them
+// back once.
 
 #include <array>
 #include <cstdint>
@@ -15,16 +17,21 @@
 
 namespace terrane {
 
+/// The display's curve, as a plain power close to sRGB's: it lets colours be encoded once, at upload, and light apart
+/// from them.
+inline constexpr double kDisplayGamma = 2.2;
+
 /// One vertex as it lies on the GPU.
 struct GpuVertex {
   std::array<std::uint16_t, 3> offset{};  ///< steps from the tile's origin
   std::uint16_t skirt = 0;                ///< 1 on a skirt
   std::array<std::int16_t, 4> normal{};   ///< signed, normalised; the fourth pads
-  std::array<std::uint8_t, 4> color{};    ///< reflectance / kColorScale; the fourth pads
+  std::array<std::uint8_t, 4> color{};    ///< (reflectance / kColorScale)^(1 / kDisplayGamma); the fourth pads
 };
 static_assert(sizeof(GpuVertex) == 20);
 
-/// Indices of one connectivity: triangles of the surface first, in an order that suits a vertex cache, then those of the skirts.
+/// Indices of one connectivity: triangles of the surface first, in an order that suits a vertex cache, then those of
+/// the skirts.
 struct SharedIndices {
   gl::Buffer buffer;
   std::size_t surfaceIndices = 0, skirtIndices = 0;
@@ -38,7 +45,8 @@ struct GpuTile {
   gl::VertexArray array;
   std::shared_ptr<const SharedIndices> indices;
 
-  /// Only once placed on the CPU: the offsets read back (3 a vertex), and an array whose positions come from a streamed buffer.
+  /// Only once placed on the CPU: the offsets read back (3 a vertex), and an array whose positions come from a streamed
+  /// buffer.
   std::vector<std::uint16_t> offsets;
   std::unique_ptr<gl::Buffer> relativePositions;
   std::unique_ptr<gl::VertexArray> relativeArray;

@@ -1,18 +1,19 @@
 #include "client/render/hud.h"
 
+#include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
 #include <imgui.h>
-#include <backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
 
-#include "client/app/readable_units.h"
+#include "client/render/readable_units.h"
 
 namespace terrane {
 namespace {
 
-constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+constexpr ImGuiWindowFlags kPanel = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
+                                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 const ImVec4 kDim{0.65f, 0.68f, 0.72f, 1}, kWarning{1.0f, 0.72f, 0.30f, 1}, kBright{0.94f, 0.95f, 0.97f, 1};
 
 void row(const char* label, const std::string& value) {
@@ -31,12 +32,14 @@ void figureRows(const HudState& s) {
   row("speed", speedText(s.speedMetersPerSecond));
   row("mode", s.mode);
   row("frame", fmt::format("{:.1f} ms median", s.medianMs));
-  row("error", s.errorPixels > s.askedErrorPixels ? fmt::format("{:.2g} px (asked {:.2g})", s.errorPixels, s.askedErrorPixels)
-                                                  : fmt::format("{:.2g} px", s.errorPixels));
+  row("error", s.errorPixels > s.askedErrorPixels
+                   ? fmt::format("{:.2g} px (asked {:.2g})", s.errorPixels, s.askedErrorPixels)
+                   : fmt::format("{:.2g} px", s.errorPixels));
   row("tiles", fmt::format("{} drawn, {} loading, {} held", s.tilesDrawn, s.tilesLoading, s.tilesResident));
   row("triangles", countText(s.triangles));
   row("received", bytesText(s.bytesReceived));
-  row("memory", fmt::format("{} process, {} tiles, {} GPU", bytesText(s.rssBytes), bytesText(s.residentBytes), bytesText(s.gpuBytes)));
+  row("memory", fmt::format("{} process, {} tiles, {} GPU", bytesText(s.rssBytes), bytesText(s.residentBytes),
+                            bytesText(s.gpuBytes)));
   row("placement", s.placement);
   row("self-test", s.selfTest);
 }
@@ -52,7 +55,8 @@ void figuresPanel(const HudState& s, float scale) {
   if (!s.frameMs.empty()) {
     const float highest = std::max(20.0f, *std::max_element(s.frameMs.begin(), s.frameMs.end()));
     ImGui::PlotHistogram("##frames", s.frameMs.data(), static_cast<int>(s.frameMs.size()), 0,
-                         fmt::format("frame time, 0 to {:.0f} ms", highest).c_str(), 0, highest, {330 * scale, 44 * scale});
+                         fmt::format("frame time, 0 to {:.0f} ms", highest).c_str(), 0, highest,
+                         {330 * scale, 44 * scale});
   }
   std::string states;
   if (s.frozen) states += "selection frozen  ";
@@ -66,8 +70,10 @@ void keysPanel(float scale, float heightPixels) {
   ImGui::SetNextWindowPos({10 * scale, heightPixels - 10 * scale}, 0, {0, 1});
   ImGui::SetNextWindowBgAlpha(0.45f);
   ImGui::Begin("keys", nullptr, kPanel);
-  ImGui::TextColored(kDim, "drag, wheel, right drag | WASD QE fly, Shift fast, Ctrl slow | Tab mode | Home reset | P placement");
-  ImGui::TextColored(kDim, "F1 this | F2 wireframe | F3 level colours | F4 freeze selection | + - error | F12 screenshot | Esc quit");
+  ImGui::TextColored(
+      kDim, "drag, wheel, right drag | WASD QE fly, Shift fast, Ctrl slow | Tab mode | Home reset | P placement");
+  ImGui::TextColored(
+      kDim, "F1 this | F2 wireframe | F3 level colours | F4 freeze selection | + - error | F12 screenshot | Esc quit");
   ImGui::End();
 }
 
@@ -123,10 +129,12 @@ void Hud::draw(const HudState& state, bool figures, int widthPixels, int heightP
   if (!state.firstViewComplete) {
     const auto fraction = static_cast<float>(std::clamp(state.progress, 0.0, 1.0));
     centredPanel("progress", height / 2, 0.5f, width, kBright,
-                 state.tilesLoading > 0 ? fmt::format("Loading: {} tiles to come", state.tilesLoading) : "Connecting", &fraction, scale_);
+                 state.tilesLoading > 0 ? fmt::format("Loading: {} tiles to come", state.tilesLoading) : "Connecting",
+                 &fraction, scale_);
   }
   if (!state.link.empty()) centredPanel("link", 10 * scale_, 0, width, kWarning, state.link, nullptr, scale_);
-  if (!state.notice.empty()) centredPanel("notice", height - 60 * scale_, 1, width, kBright, state.notice, nullptr, scale_);
+  if (!state.notice.empty())
+    centredPanel("notice", height - 60 * scale_, 1, width, kBright, state.notice, nullptr, scale_);
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The overlay: figures of the flight, what is loading, what went wrong, and the keys. It shows and never takes input. Draws into the
-// current framebuffer after the scene and leaves the GL state as it was. GL thread only.
+// The overlay: figures of the flight, what is loading, what went wrong, and the keys. It shows and never takes input.
+// Draws into the current framebuffer after the scene and leaves the GL state as it was. GL thread only.
 
 #include <memory>
 #include <span>
@@ -12,18 +12,18 @@ namespace terrane {
 
 /// What is shown; lengths in metres.
 struct HudState {
-  double altitudeMeters = 0;      ///< above the reference sphere
-  double groundMeters = 0;        ///< height above the finest known ground
+  double altitudeMeters = 0;  ///< above the reference sphere
+  double groundMeters = 0;    ///< height above the finest known ground
   bool groundKnown = false;
   double longitudeDegrees = 0, latitudeDegrees = 0, headingDegrees = 0, pitchDegrees = 0;
   double speedMetersPerSecond = 0;
-  std::span<const float> frameMs; ///< of the last frames, oldest first
+  std::span<const float> frameMs;  ///< of the last frames, oldest first
   double medianMs = 0;
   double errorPixels = 0, askedErrorPixels = 0;
   std::size_t tilesDrawn = 0, tilesLoading = 0, tilesResident = 0, triangles = 0;
   std::size_t bytesReceived = 0, residentBytes = 0, gpuBytes = 0, rssBytes = 0;
   std::string placement, selfTest, mode, link, notice;  ///< link, notice: empty when there is nothing to say
-  double progress = 1;            ///< towards the first full view
+  double progress = 1;                                  ///< towards the first full view
   bool firstViewComplete = false;
   bool frozen = false, wireframe = false, levelColors = false;
 };

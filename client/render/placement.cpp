@@ -18,8 +18,9 @@ constexpr PlacementName kNames[] = {{Placement::Integer, "integer"},
                                     {Placement::Cpu, "cpu"},
                                     {Placement::Float32, "float32"}};
 
-/// What rounding to float leaves behind. Never inlined: where two of these stand side by side GCC 12.2 (-O2 and up) vectorises the
-/// round trip double -> float -> double and then drops it, so that the answer is 0 (placement_test sees it).
+/// What rounding to float leaves behind. Never inlined: where two of these stand side by side GCC 12.2 (-O2 and up)
+/// vectorises the round trip double -> float -> double and then drops it, so that the answer is 0 (placement_test sees
+/// it).
 [[gnu::noinline]] float roundingError(double value) noexcept {
   return static_cast<float>(value - static_cast<double>(static_cast<float>(value)));
 }

@@ -1,19 +1,26 @@
 #include "client/render/tile_program.h"
 
+#include <fmt/format.h>
+
 #include <string>
 
 namespace terrane {
 namespace {
 
-/// Display value (linear) of one unit of reflected light: highland soil (reflectance 0.16) under a high sun shows as 0.75 in sRGB.
-constexpr float kExposure = 3.2f;
+/// Light on the display per unit of reflected light: highland soil (reflectance 0.16) under a high sun shows at 0.7 of
+/// the display's scale, and little is ever cut off above.
+constexpr float kExposure = 2.8f;
 
 const char* placementDefine(Placement placement) {
   switch (placement) {
-    case Placement::Integer: return "PLACEMENT_INTEGER";
-    case Placement::DoubleFloat: return "PLACEMENT_DOUBLE_FLOAT";
-    case Placement::Cpu: return "PLACEMENT_CPU";
-    case Placement::Float32: return "PLACEMENT_FLOAT32";
+    case Placement::Integer:
+      return "PLACEMENT_INTEGER";
+    case Placement::DoubleFloat:
+      return "PLACEMENT_DOUBLE_FLOAT";
+    case Placement::Cpu:
+      return "PLACEMENT_CPU";
+    case Placement::Float32:
+      return "PLACEMENT_FLOAT32";
   }
   return "PLACEMENT_CPU";
 }
@@ -40,6 +47,7 @@ Result<TileProgram> TileProgram::build(Placement placement, TilePurpose purpose,
     case TilePurpose::Shaded:
       spec.vertexFile = "tile.vert.glsl";
       spec.fragmentFile = "tile.frag.glsl";
+      spec.defines.push_back(fmt::format("DISPLAY_GAMMA {:.4f}", kDisplayGamma));
       for (const auto& effect : effects) spec.defines.emplace_back(effect->define());
       break;
     case TilePurpose::Coverage:

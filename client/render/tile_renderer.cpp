@@ -95,7 +95,8 @@ struct TileRenderer::State {
     return &*slot;
   }
 
-  /// As program; a driver that compiled the self-test but not this is reported once and asked for the Cpu placement instead.
+  /// As program; a driver that compiled the self-test but not this is reported once and asked for the Cpu placement
+  /// instead.
   TileProgram* programOrFallback(Placement placement, TilePurpose purpose) {
     for (const Placement candidate : {placement, Placement::Cpu}) {
       auto found = program(candidate, purpose);
@@ -146,7 +147,8 @@ struct TileRenderer::State {
     if (!unreachable.empty()) forEachTile(camera, unreachable, Placement::Cpu, purpose, drawTile);
   }
 
-  DrawStats drawTiles(const Camera& camera, std::span<const FacePath> paths, const DrawSettings& settings, Placement placement) {
+  DrawStats drawTiles(const Camera& camera, std::span<const FacePath> paths, const DrawSettings& settings,
+                      Placement placement) {
     DrawStats stats;
     const TilePass pass(capabilities, settings.wireframe);
     forEachTile(camera, nearestFirst(camera, paths), placement, TilePurpose::Shaded,
@@ -161,7 +163,8 @@ struct TileRenderer::State {
   }
 };
 
-Result<std::unique_ptr<TileRenderer>> TileRenderer::create(const std::vector<EffectCall>& effects, const RendererOptions& options) {
+Result<std::unique_ptr<TileRenderer>> TileRenderer::create(const std::vector<EffectCall>& effects,
+                                                           const RendererOptions& options) {
   auto state = std::make_unique<State>();
   state->capabilities = gl::detectCapabilities(options.forceBaseline);
   auto report = runGpuSelfTest(state->capabilities);
@@ -196,8 +199,6 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const FacePath> til
     glViewport(0, 0, camera.widthPixels, camera.heightPixels);
     return state_->drawTiles(camera, tiles, settings, placement);
   }
-  std::array<GLint, 4> viewport{};
-  glGetIntegerv(GL_VIEWPORT, viewport.data());
   std::optional<RenderTarget>& target = state_->windowTarget;
   if (!target || target->widthPixels() != camera.widthPixels || target->heightPixels() != camera.heightPixels) {
     target.reset();
@@ -207,7 +208,7 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const FacePath> til
   }
   target->bind();
   const DrawStats stats = state_->drawTiles(camera, tiles, settings, placement);
-  target->blitToWindow(viewport[2], viewport[3]);
+  target->blitToWindow(camera.widthPixels, camera.heightPixels);
   return stats;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Draws terrain tiles with one of four placements, and counts the pixels that a watertight surface must cover. GL thread only; needs a
-// current GL context of 3.3 core or better.
+// Draws terrain tiles with one of four placements, and counts the pixels that a watertight surface must cover. GL
+// thread only; needs a current GL context of 3.3 core or better.
 
 #include <cstdint>
 #include <memory>
@@ -18,9 +18,9 @@
 namespace terrane {
 
 /// How a vertex finds its place relative to the camera:
-///   Integer      (origin - camera) in steps + offset, as integers in the shader; converted once, then minus the camera's sub-step rest
-///   DoubleFloat  origin + offset * step as a double-float, minus the camera as a double-float, in the shader
-///   Cpu          double on the CPU, uploaded as camera-relative floats every frame (the reference)
+///   Integer      (origin - camera) in steps + offset, as integers in the shader; converted once, then minus the
+///   camera's sub-step rest DoubleFloat  origin + offset * step as a double-float, minus the camera as a double-float,
+///   in the shader Cpu          double on the CPU, uploaded as camera-relative floats every frame (the reference)
 ///   Float32      origin + offset * step as plain floats: the control that jitters
 enum class Placement : std::uint8_t { Integer, DoubleFloat, Cpu, Float32 };
 std::string_view placementName(Placement placement) noexcept;
@@ -34,7 +34,7 @@ struct SelfTestReport {
   bool twoProdExact = false;          ///< Dekker's split, with precise
   bool twoSumWithoutPrecise = false;  ///< for the record: false on drivers that simplify it away
   bool fmaFused = false;
-  std::string renderer, version;      ///< GL strings
+  std::string renderer, version;  ///< GL strings
   Placement chosen = Placement::Integer;
 };
 
@@ -61,7 +61,8 @@ struct CoverageCount {
 class TileRenderer {
  public:
   /// effects: those the scene names; only they get a shader variant or a uniform. Errors: Unsupported, Io (shader log).
-  static Result<std::unique_ptr<TileRenderer>> create(const std::vector<EffectCall>& effects, const RendererOptions& options = {});
+  static Result<std::unique_ptr<TileRenderer>> create(const std::vector<EffectCall>& effects,
+                                                      const RendererOptions& options = {});
   ~TileRenderer();
 
   const SelfTestReport& selfTest() const noexcept;
@@ -73,16 +74,17 @@ class TileRenderer {
   void remove(const FacePath& path);
   void clear();
 
-  /// Draws into the current framebuffer (colour and depth cleared here). Tiles that were never uploaded are skipped. The window's own
-  /// framebuffer lacks the depth precision: with that bound, draws into a RenderTarget of the camera's size and copies it over.
+  /// Draws into the current framebuffer (colour and depth cleared here). Tiles that were never uploaded are skipped.
+  /// The window's own framebuffer lacks the depth precision: with that bound, draws into a RenderTarget of the camera's
+  /// size and copies it over (the camera then has the window's size).
   DrawStats draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings);
 
   /// A pass of tiles only into an own target, read back: no sky, no multisampling, no effects.
   CoverageCount countCoverage(const Camera& camera, std::span<const FacePath> tiles, Placement placement,
                               double lowestRadiusMeters);
 
-  /// Clip-space positions (x, y, z, w) of a tile's vertices as the vertex shader computes them, by transform feedback; for the tests
-  /// of placement against a reference of higher precision.
+  /// Clip-space positions (x, y, z, w) of a tile's vertices as the vertex shader computes them, by transform feedback;
+  /// for the tests of placement against a reference of higher precision.
   std::vector<float> clipPositions(const Camera& camera, const FacePath& tile, Placement placement);
 
   std::size_t gpuBytes() const noexcept;

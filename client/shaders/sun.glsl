@@ -8,5 +8,7 @@ float litFraction(vec3 normal, vec3 towardsEye) {
   float emergence = max(dot(normal, towardsEye), 0.0);
   float lit = 0.5 + 0.5 * dot(towardsSun, towardsEye);
   float lommelSeeliger = 2.0 * incidence / max(incidence + emergence, 1e-4);
-  return mix(incidence, lommelSeeliger, lit * lit * lit) + ambient;
+  float light = mix(incidence, lommelSeeliger, lit * lit * lit);
+  // Seen at a grazing angle soil shines up to twice as bright: a soft shoulder keeps that on the display's scale. 1 stays 1.
+  return 1.5 * light / (1.0 + 0.5 * light) + ambient;
 }

@@ -1,32 +1,28 @@
 // A terrain vertex: place it, and light it. Light is computed here and not per pixel: triangles are a few pixels large, and software
-// GL pays for every interpolated value of every triangle.
+// GL pays for every operation on every 4 x 4 block that a triangle touches.
 #include "placement.glsl"
 #include "projection.glsl"
 
 layout(location = 1) in vec4 vertexNormal;
-layout(location = 2) in vec4 vertexColor;
+layout(location = 2) in vec4 vertexColor;  // (reflectance / kColorScale)^(1 / DISPLAY_GAMMA)
 
-uniform float exposure;  // display value per unit of reflected light
+uniform float exposure;  // light on the display per unit of light that soil of reflectance kColorScale sends back
 uniform vec3 tint;
 
 #ifdef EFFECT_SUN
 #include "sun.glsl"
 #endif
 
-out vec3 color;  // as the display wants it (sRGB)
+out vec3 color;  // as the display wants it
 invariant gl_Position;
-
-vec3 toDisplay(vec3 linear) {
-  vec3 c = clamp(linear, 0.0, 1.0);
-  return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThan(c, vec3(0.0031308)));
-}
 
 void main() {
   vec3 relative = relativePosition();
   gl_Position = clipPosition(relative);
-  vec3 light = vertexColor.rgb * exposure;
+  float light = exposure;
 #ifdef EFFECT_SUN
-  light *= litFraction(normalize(vertexNormal.xyz), -normalize(relative));
+  light *= litFraction(vertexNormal.xyz, -normalize(relative));
 #endif
-  color = toDisplay(light) * tint;
+  // The display's curve is a power, and a power of a product is the product of powers: one pow, not three.
+  color = vertexColor.rgb * pow(light, 1.0 / DISPLAY_GAMMA) * tint;
 }

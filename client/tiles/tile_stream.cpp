@@ -56,6 +56,7 @@ struct TileStream::State {
   bool sceneFromCache = false, cacheOffered = false;
   bool sceneStale = false;  ///< the server has said that our revision is gone
   bool bodyMissing = false;
+  bool wantDue = false;  ///< a new revision is in force, and nobody has said yet what is wanted of it
   int sameRevisionAgain = 0;
   const BodyInfo* body = nullptr;
 
@@ -114,6 +115,7 @@ struct TileStream::State {
     if (body->revision != oldRevision) {
       sameRevisionAgain = 0;
       sceneStale = false;
+      wantDue = true;
       cancelOrders();
       forgetFailures();
     } else if (sceneStale) {
@@ -224,7 +226,7 @@ struct TileStream::State {
 
   bool idle() {
     drain();
-    if (scenes.empty() || sceneStale) return false;
+    if (scenes.empty() || sceneStale || wantDue) return false;
     const auto counts = pipeline->counts();
     return counts.orders == 0 && counts.lost == 0 && uploading == 0;
   }
@@ -300,6 +302,7 @@ void TileStream::want(const std::vector<WantedTile>& wanted) {
   state_->drain();
   if (!state_->body) return;
   ++state_->call;
+  state_->wantDue = false;
   const LastWanted now{state_->call, Clock::now()};
   for (const WantedTile& tile : wanted) state_->wantOne(tile, now);
   state_->dropUnwanted(now.time);

@@ -19,8 +19,9 @@ double cellMeters(double radiusMeters, int level, int cellsPerEdge) noexcept {
 /// How far a straight edge may lie below the surface that interpolates its ends' heights over a sphere: c^2 / 8 r for
 /// level ends, and dr^2 / 4 r more where they differ by dr (in the middle direction a chord is at the harmonic mean of
 /// its ends' radii).
-double sagMeters(double cell, double lowestRadius) noexcept {
-  return cell * cell * (1.0 + 2.0 * kSteepestSlope * kSteepestSlope) / (8.0 * lowestRadius);
+double sagMeters(double cell, double lowestRadius, double heightSpan) noexcept {
+  const double rise = std::min(kSteepestSlope * cell, heightSpan);
+  return (0.5 * cell * cell + rise * rise) / (4.0 * lowestRadius);
 }
 
 }  // namespace
@@ -33,6 +34,7 @@ std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radi
                                            int maxLevel) {
   const double finest = 2.0 * cellMeters(radiusMeters, maxLevel, cellsPerEdge);
   const HeightRange heights = field.heightRange();
+  const double span = heights.maxMeters - heights.minMeters;
   std::vector<LevelAccuracy> levels;
   for (int level = 0; level <= maxLevel; ++level) {
     const double cell = cellMeters(radiusMeters, level, cellsPerEdge);
@@ -40,12 +42,11 @@ std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radi
     accuracy.minWavelengthMeters = 2.0 * cell;
     accuracy.geometricErrorMeters = kErrorPerCell * cell;
     accuracy.skirtSlackMeters =
-        skirtMarginMeters(radiusMeters, level) + sagMeters(cell, radiusMeters + heights.minMeters);
+        skirtMarginMeters(radiusMeters, level) + sagMeters(cell, radiusMeters + heights.minMeters, span);
     if (level < maxLevel) {
       // No two heights differ by more than the field's whole range: at the coarsest levels that is the better bound.
-      accuracy.subtreeSlackMeters =
-          std::min(heights.maxMeters - heights.minMeters,
-                   field.omittedAmplitudeMeters(2.0 * cell, finest) + field.interpolationErrorMeters(2.0 * cell, cell));
+      accuracy.subtreeSlackMeters = std::min(
+          span, field.omittedAmplitudeMeters(2.0 * cell, finest) + field.interpolationErrorMeters(2.0 * cell, cell));
     }
     levels.push_back(accuracy);
   }

@@ -23,7 +23,7 @@ namespace terrane {
 inline constexpr int kGeneratorVersion = 1;
 
 struct WireSettings {
-  int cellsPerEdge = 64;
+  int cellsPerEdge = 64;  ///< a power of two, 2 to 128
   DracoSettings draco;
 };
 
@@ -45,7 +45,9 @@ class TileBuilder {
   const Body& body() const noexcept;
   const BodyInfo& info() const noexcept;  ///< as scene.json gives it, with the revision
 
-  /// The mesh before encoding. Errors: InvalidArgument (path deeper than the body's cap, wrong scheme).
+  /// The mesh before encoding. Errors: InvalidArgument (path deeper than the body's cap, wrong scheme), TooLarge
+  /// (relief beyond what 16 bits of the lattice hold: more than about one tile's width within a tile, which no lunar
+  /// tile comes near).
   Result<Tile> buildMesh(const FacePath& path, BuildTimes* times = nullptr) const;
   Result<BuiltTile> build(const FacePath& path) const;
 

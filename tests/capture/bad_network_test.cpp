@@ -45,12 +45,14 @@ void expectOneLineNamingTheServer(const ViewOutcome& outcome) {
 
 TEST(BadNetwork, ADeadServerEndsAScriptedRunWithOneLineAfterTheTimeLimit) {
   const Port port(false);  // bound, so that nobody else listens there, but not listening
-  expectOneLineNamingTheServer(runView({"--server", port.url(), "--headless", "--size", "64x36", "--time-limit", "2"}, 60s));
+  expectOneLineNamingTheServer(
+      runView({"--server", port.url(), "--headless", "--size", "64x36", "--time-limit", "2"}, 60s));
 }
 
 TEST(BadNetwork, AServerThatNeverAnswersEndsAScriptedRunToo) {
   const Port port(true);
-  expectOneLineNamingTheServer(runView({"--server", port.url(), "--headless", "--size", "64x36", "--time-limit", "2"}, 60s));
+  expectOneLineNamingTheServer(
+      runView({"--server", port.url(), "--headless", "--size", "64x36", "--time-limit", "2"}, 60s));
 }
 
 TEST(BadNetwork, ANonsenseServerUrlIsRefused) {
@@ -65,9 +67,10 @@ TEST(BadNetwork, AServerThatDiesInFlightLeavesTheViewerDrawingToTheEnd) {
   ASSERT_FALSE(server.url.empty()) << server.process->errors();
   const TemporaryFolder folder;
   // The first pose is full before the flight begins; then every frame asks for more, from a server that is gone.
-  std::ofstream(folder.file("f.txt")) << "# terrane flight 1\n0 -10 8 3000000 0 -90\n1 -10 8 2999999 0 -90\n9 40 8 30000 0 -60\n";
-  ChildProcess viewer({programFile("terrane-view"), "--server", server.url, "--headless", "--size", "160x90", "--flight", folder.file("f.txt"),
-                       "--step", "0.05", "--stats", folder.file("s.json")});
+  std::ofstream(folder.file("f.txt"))
+      << "# terrane flight 1\n0 -10 8 3000000 0 -90\n1 -10 8 2999999 0 -90\n9 40 8 30000 0 -60\n";
+  ChildProcess viewer({programFile("terrane-view"), "--server", server.url, "--headless", "--size", "160x90",
+                       "--flight", folder.file("f.txt"), "--step", "0.05", "--stats", folder.file("s.json")});
   ASSERT_FALSE(viewer.waitForLine("3000 km above sphere", 120s).empty()) << viewer.errors();
   server.process->kill();
   const auto status = viewer.wait(240s);

@@ -1,4 +1,5 @@
-// The surface is closed: no pixel whose ray meets the body's lowest sphere shows background. The controls leave a tile out.
+// The surface is closed: no pixel whose ray meets the body's lowest sphere shows background. The controls leave a tile
+// out.
 
 #include "client/render/coverage.h"
 
@@ -15,7 +16,7 @@ namespace terrane {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 360;
-constexpr double kErrorPixels = 4;
+constexpr double kErrorPixels = 2;
 
 class CoverageTest : public GlTest {
  protected:
@@ -28,7 +29,8 @@ class CoverageTest : public GlTest {
     if (!renderer) throw std::runtime_error(renderer.error().text());
     return std::move(*renderer);
   }
-  static CoverageCount count(TileRenderer& renderer, const Camera& camera, const std::vector<FacePath>& paths, Placement placement) {
+  static CoverageCount count(TileRenderer& renderer, const Camera& camera, const std::vector<FacePath>& paths,
+                             Placement placement) {
     for (const FacePath& path : paths) renderer.upload(moon().tile(path));
     return renderer.countCoverage(camera, paths, placement, moon().selection().occluderRadiusMeters);
   }
@@ -37,7 +39,7 @@ class CoverageTest : public GlTest {
 /// The number of random cameras: few by default, TERRANE_CAMERAS for the full count.
 int cameraCount() {
   const char* text = std::getenv("TERRANE_CAMERAS");  // NOLINT(concurrency-mt-unsafe)
-  return text != nullptr ? std::max(1, std::atoi(text)) : 6;
+  return text != nullptr ? std::max(1, std::atoi(text)) : 12;
 }
 
 TEST_F(CoverageTest, EverySettledViewIsClosedFromTwentyCentimetresToTenThousandKilometres) {
@@ -49,14 +51,16 @@ TEST_F(CoverageTest, EverySettledViewIsClosedFromTwentyCentimetresToTenThousandK
   for (int i = 0; i < cameraCount(); ++i) {
     const double altitude = 0.2 * std::pow(1e7 / 0.2, unit(random));
     const double pitch[] = {-90, -20, 5};  // down, level, up
-    ViewPose pose{(2 * unit(random) - 1) * 180 * kDegree, std::asin(2 * unit(random) - 1), altitude, 2 * unit(random) * 3.14159, pitch[i % 3] * kDegree};
+    ViewPose pose{(2 * unit(random) - 1) * 180 * kDegree, std::asin(2 * unit(random) - 1), altitude,
+                  2 * unit(random) * 3.14159, pitch[i % 3] * kDegree};
     const Camera camera = moon().cameraAboveGround(pose, kWidth, kHeight);
     const std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);
     auto renderer = makeRenderer();
     for (const Placement placement : {Placement::Integer, Placement::DoubleFloat}) {
       const CoverageCount covered = count(*renderer, camera, paths, placement);
-      EXPECT_EQ(covered.uncovered, 0u) << placementName(placement) << ", camera " << i << ": longitude " << pose.longitude << ", latitude "
-                                       << pose.latitude << ", " << altitude << " m above ground, heading " << pose.heading << ", pitch " << pose.pitch;
+      EXPECT_EQ(covered.uncovered, 0u) << placementName(placement) << ", camera " << i << ": longitude "
+                                       << pose.longitude << ", latitude " << pose.latitude << ", " << altitude
+                                       << " m above ground, heading " << pose.heading << ", pitch " << pose.pitch;
       skirt += covered.skirt;
     }
   }
@@ -74,11 +78,13 @@ TEST_F(CoverageTest, LeavingOutATileIsSeen) {
   std::vector<FacePath> holed;
   for (const FacePath& path : paths) {
     const double width = std::ldexp(2.0, -path.level());
-    const bool isBelow = path.face() == below.face && std::floor((below.s + 1) / width) == path.column() && std::floor((below.t + 1) / width) == path.row();
+    const bool isBelow = path.face() == below.face && std::floor((below.s + 1) / width) == path.column() &&
+                         std::floor((below.t + 1) / width) == path.row();
     if (!isBelow) holed.push_back(path);
   }
   ASSERT_EQ(holed.size() + 1, paths.size());
-  const CoverageCount open = renderer->countCoverage(camera, holed, Placement::Integer, moon().selection().occluderRadiusMeters);
+  const CoverageCount open =
+      renderer->countCoverage(camera, holed, Placement::Integer, moon().selection().occluderRadiusMeters);
   EXPECT_GT(open.uncovered, 500u);
 }
 
@@ -111,9 +117,11 @@ TEST(Coverage, AnEmptyPictureCountsTheDiscOfTheBody) {
 TEST(Coverage, AMillimetreAboveTheLowestSphereTheHorizonIsInTheMiddleOfALevelView) {
   const std::vector<std::uint8_t> nothing(kWidth * kHeight, kCoverageNone);
   // Half the rows look below the horizon, which a subtraction of squared distances would misplace.
-  EXPECT_EQ(countCoveragePixels(plainCamera(0.001, 0), nothing, 1737400).uncovered, static_cast<std::uint64_t>(kWidth * kHeight / 2));
+  EXPECT_EQ(countCoveragePixels(plainCamera(0.001, 0), nothing, 1737400).uncovered,
+            static_cast<std::uint64_t>(kWidth * kHeight / 2));
   EXPECT_EQ(countCoveragePixels(plainCamera(0.001, 80 * kDegree), nothing, 1737400).uncovered, 0u) << "looking up";
-  EXPECT_EQ(countCoveragePixels(plainCamera(-1, 80 * kDegree), nothing, 1737400).uncovered, static_cast<std::uint64_t>(kWidth * kHeight))
+  EXPECT_EQ(countCoveragePixels(plainCamera(-1, 80 * kDegree), nothing, 1737400).uncovered,
+            static_cast<std::uint64_t>(kWidth * kHeight))
       << "inside the sphere every ray meets it";
 }
 

@@ -74,7 +74,8 @@ double TileSource::groundMeters(double longitude, double latitude) const {
   const Camera above = cameraFromPose({longitude, latitude, 0, 0, 0}, 1.0, 1.0, 1, 1);
   const SampleBatch batch{&above.positionBody.x, &above.positionBody.y, &above.positionBody.z, 1, 1};
   SurfaceSamples samples;
-  const double cell = nominalTileWidthMeters(builder_.body().radiusMeters, selection().maxLevel) / builder_.info().cellsPerEdge;
+  const double cell =
+      nominalTileWidthMeters(builder_.body().radiusMeters, selection().maxLevel) / builder_.info().cellsPerEdge;
   field_->evaluate(batch, 2 * cell, samples);
   return samples.heightMeters.front();
 }

@@ -1,4 +1,4 @@
-// Pictures: PNG files written and read back, the framebuffer's orientation, the window without a display.
+// Pictures: PNG files written and read back, and their difference.
 
 #include "client/gl/image.h"
 
@@ -8,9 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-
-#include "client/gl/render_target.h"
-#include "tests/capture/gl_fixture.h"
 
 namespace terrane {
 namespace {
@@ -75,20 +72,6 @@ TEST(Image, RmsDifferenceIsZeroForEqualPicturesAndTheStepForAConstantStep) {
   Image b = a;
   for (auto& value : b.rgb) value = 103;
   EXPECT_DOUBLE_EQ(rmsDifference(a, b), 3.0);
-}
-
-class WindowTest : public GlTest {};
-
-TEST_F(WindowTest, OpensWithoutADisplayOfTheUsers) {
-  EXPECT_NE(window().handle(), nullptr);
-  EXPECT_FALSE(window().shouldClose());
-}
-
-TEST_F(WindowTest, ARenderTargetLargerThanAnyFramebufferIsRefused) {
-  const auto target = RenderTarget::create(1 << 20, 16);
-  ASSERT_FALSE(target);
-  EXPECT_EQ(target.error().kind, ErrorKind::TooLarge);
-  EXPECT_FALSE(RenderTarget::create(0, 16));
 }
 
 }  // namespace

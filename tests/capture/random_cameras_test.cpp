@@ -1,5 +1,5 @@
-// Random cameras over the Moon, settled one after another in one session: no pixel that must show ground shows background.
-// TERRANE_CAMERAS: how many (12); TERRANE_SEED: of the choice (printed).
+// Random cameras over the Moon, settled one after another in one session: no pixel that must show ground shows
+// background. TERRANE_CAMERAS: how many (12); TERRANE_SEED: of the choice (printed).
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ std::uint64_t setting(const char* name, std::uint64_t otherwise) {
   return value == nullptr ? otherwise : std::strtoull(value, nullptr, 10);
 }
 
-// One pose a line, a second apart. Directions are uniform over the sphere, heights log-uniform, and pitch goes down, level, up in turn.
+// One pose a line, a second apart. Directions are uniform over the sphere, heights log-uniform, and pitch goes down,
+// level, up in turn.
 std::string randomFlight(std::uint64_t seed, std::uint64_t count) {
   std::mt19937_64 random(seed);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -41,9 +42,10 @@ TEST(RandomCameras, ShowNoHoleAtAnyHeightAndPitch) {
   ASSERT_FALSE(server.url.empty()) << server.process->errors();
   const TemporaryFolder folder;
   std::ofstream(folder.file("cameras.txt")) << randomFlight(seed, count);
-  const auto outcome = runView({"--server", server.url, "--headless", "--size", "640x360", "--flight", folder.file("cameras.txt"), "--step", "1",
-                                "--settle", "--stats", folder.file("stats.json")},
-                               std::chrono::seconds(60 + 20 * static_cast<long>(count)));
+  const auto outcome =
+      runView({"--server", server.url, "--headless", "--size", "640x360", "--flight", folder.file("cameras.txt"),
+               "--step", "1", "--settle", "--stats", folder.file("stats.json")},
+              std::chrono::seconds(60 + 20 * static_cast<long>(count)));
   fmt::print("{}", outcome.output);
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   const std::string json = readFile(folder.file("stats.json"));

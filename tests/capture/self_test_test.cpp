@@ -1,5 +1,5 @@
-// What this GPU's arithmetic does, as the start-up check found it. The facts about llvmpipe are the controls: they show that the check
-// sees a broken TwoSum when there is one.
+// What this GPU's arithmetic does, as the start-up check found it. The facts about llvmpipe are the controls: they show
+// that the check sees a broken TwoSum when there is one.
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,10 @@ namespace {
 class GpuSelfTest : public GlTest {};
 
 void print(const SelfTestReport& report) {
-  std::printf("%s | %s | integer %d, two_sum precise %d, plain %d, two_prod %d, fma fused %d -> %s\n", report.renderer.c_str(),
-              report.version.c_str(), report.integerExact, report.twoSumExact, report.twoSumWithoutPrecise, report.twoProdExact,
-              report.fmaFused, std::string(placementName(report.chosen)).c_str());
+  std::printf("%s | %s | integer %d, two_sum precise %d, plain %d, two_prod %d, fma fused %d -> %s\n",
+              report.renderer.c_str(), report.version.c_str(), report.integerExact, report.twoSumExact,
+              report.twoSumWithoutPrecise, report.twoProdExact, report.fmaFused,
+              std::string(placementName(report.chosen)).c_str());
 }
 
 bool isLlvmpipe(const SelfTestReport& report) { return report.renderer.find("llvmpipe") != std::string::npos; }
@@ -26,9 +27,15 @@ TEST_F(GpuSelfTest, ChoosesAPlacementThatThisGpuComputesExactly) {
   print(*report);
   EXPECT_FALSE(report->renderer.empty());
   switch (report->chosen) {
-    case Placement::Integer: EXPECT_TRUE(report->integerExact); break;
-    case Placement::DoubleFloat: EXPECT_TRUE(report->twoSumExact); break;
-    default: EXPECT_TRUE(!report->integerExact && !report->twoSumExact); break;
+    case Placement::Integer:
+      EXPECT_TRUE(report->integerExact);
+      break;
+    case Placement::DoubleFloat:
+      EXPECT_TRUE(report->twoSumExact);
+      break;
+    default:
+      EXPECT_TRUE(!report->integerExact && !report->twoSumExact);
+      break;
   }
 }
 

@@ -145,9 +145,37 @@ TEST(ViewOptions, HelpExplainsEveryFlagAndEveryKey) {
   const auto result = parseViewOptions({"--help"}, &noEnvironment);
   ASSERT_TRUE(result);
   const std::string& text = std::get<OptionsText>(*result).text;
-  for (const char* word : {"--server", "--body", "--camera", "--above-ground", "--flight", "--record", "--size", "--fov", "--error", "--frame-budget",
-                           "--placement", "--headless", "--settle", "--capture", "--stats", "--cache", "--cache-budget", "--memory-budget",
-                           "--frames", "--step", "--time-limit", "--explain", "--hud", "--version", "F1", "F2", "F3", "F4", "F12", "Tab", "Home"})
+  for (const char* word : {"--server",
+                           "--body",
+                           "--camera",
+                           "--above-ground",
+                           "--flight",
+                           "--record",
+                           "--size",
+                           "--fov",
+                           "--error",
+                           "--frame-budget",
+                           "--placement",
+                           "--headless",
+                           "--settle",
+                           "--capture",
+                           "--stats",
+                           "--cache",
+                           "--cache-budget",
+                           "--memory-budget",
+                           "--frames",
+                           "--step",
+                           "--time-limit",
+                           "--explain",
+                           "--hud",
+                           "--version",
+                           "F1",
+                           "F2",
+                           "F3",
+                           "F4",
+                           "F12",
+                           "Tab",
+                           "Home"})
     EXPECT_NE(text.find(word), std::string::npos) << word;
 }
 
@@ -169,7 +197,8 @@ TEST(ViewProgram, VersionIsOneLineOnStdout) {
 TEST(ViewProgram, AFlightThatIsNoFileIsNamed) {
   const testing_support::RunningServer server("smooth");
   ASSERT_FALSE(server.url.empty());
-  const auto outcome = testing_support::runView({"--server", server.url, "--headless", "--size", "64x36", "--flight", "/no/such/flight"});
+  const auto outcome = testing_support::runView(
+      {"--server", server.url, "--headless", "--size", "64x36", "--flight", "/no/such/flight"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(testing_support::lineCount(outcome.errors), 1u) << outcome.errors;
   EXPECT_NE(outcome.errors.find("--flight"), std::string::npos) << outcome.errors;

@@ -27,7 +27,8 @@ class Viewer : public testing::Test {
 };
 
 TEST_F(Viewer, SettlesAtACameraCapturesItAndWritesEveryFigure) {
-  const auto outcome = view({"--camera", "-10,8,3000000", "--settle", "--capture", folder_.file("a.png"), "--stats", folder_.file("a.json")});
+  const auto outcome = view(
+      {"--camera", "-10,8,3000000", "--settle", "--capture", folder_.file("a.png"), "--stats", folder_.file("a.json")});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_EQ(outcome.errors, "");
   const auto image = readPng(folder_.file("a.png"));
@@ -35,9 +36,10 @@ TEST_F(Viewer, SettlesAtACameraCapturesItAndWritesEveryFigure) {
   EXPECT_EQ(image->width, 320);
   EXPECT_EQ(image->height, 180);
   const std::string json = readFile(folder_.file("a.json"));
-  for (const char* key : {"framesDrawn", "frameMs", "p50", "p99", "max", "msToSettle", "tilesDrawn", "tilesResident", "requests", "bytesReceived",
-                          "decodeMs", "uncoveredPixels", "skirtPixels", "rssBytes", "gpuBytes", "placement", "selfTest", "errorPixels",
-                          "camera", "effects", "constructed", "renderer", "points"})
+  for (const char* key : {"framesDrawn", "frameMs",       "p50",         "p99",           "max",      "msToSettle",
+                          "tilesDrawn",  "tilesResident", "requests",    "bytesReceived", "decodeMs", "uncoveredPixels",
+                          "skirtPixels", "rssBytes",      "gpuBytes",    "placement",     "selfTest", "errorPixels",
+                          "camera",      "effects",       "constructed", "renderer",      "points"})
     EXPECT_NE(json.find(std::string(1, '"').append(key).append("\": ")), std::string::npos) << key;
   EXPECT_EQ(jsonNumber(json, "framesDrawn"), 8);
   EXPECT_EQ(jsonNumber(json, "framesCounted"), 8);
@@ -74,15 +76,18 @@ TEST_F(Viewer, TheSameCameraGivesTheSamePictureTwice) {
 }
 
 TEST_F(Viewer, AboveGroundStandsThatHighOverTheFinestGround) {
-  const auto outcome = view({"--camera", "-10,8,2,0,0", "--above-ground", "--error", "8", "--stats", folder_.file("s.json")});
+  const auto outcome =
+      view({"--camera", "-10,8,2,0,0", "--above-ground", "--error", "8", "--stats", folder_.file("s.json")});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_NEAR(jsonNumber(readFile(folder_.file("s.json")), "heightAboveGroundMeters"), 2, 1e-6);
 }
 
 TEST_F(Viewer, AFlightIsCapturedAndMeasuredAtEachOfItsPoints) {
-  std::ofstream(folder_.file("f.txt")) << "# terrane flight 1\nabove-ground\n0 -10 8 2000000 0 -90\n1 -10 8 20000 0 -60\n2 -10 8 50 0 -20\n";
-  const auto outcome = view({"--flight", folder_.file("f.txt"), "--step", "0.5", "--settle", "--error", "4", "--capture",
-                             folder_.file("p-%d.png"), "--stats", folder_.file("f.json"), "--record", folder_.file("r.txt")});
+  std::ofstream(folder_.file("f.txt"))
+      << "# terrane flight 1\nabove-ground\n0 -10 8 2000000 0 -90\n1 -10 8 20000 0 -60\n2 -10 8 50 0 -20\n";
+  const auto outcome =
+      view({"--flight", folder_.file("f.txt"), "--step", "0.5", "--settle", "--error", "4", "--capture",
+            folder_.file("p-%d.png"), "--stats", folder_.file("f.json"), "--record", folder_.file("r.txt")});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_EQ(lineCount(outcome.output), 3u) << outcome.output;
   for (const char* name : {"p-1.png", "p-2.png", "p-3.png"}) EXPECT_TRUE(readPng(folder_.file(name))) << name;
@@ -115,8 +120,8 @@ TEST(ViewerOfABareSphere, ConstructsNoEffect) {
 
 TEST_F(Viewer, AFrameBudgetRaisesTheErrorThatAFrameIsDrawnWith) {
   // No machine draws a frame in a hundredth of a millisecond: the controller has to go to its limit.
-  const auto outcome = view({"--camera", "-10,8,3000000", "--frame-budget", "0.01", "--settle", "--frames", "60", "--error", "2", "--stats",
-                             folder_.file("b.json")});
+  const auto outcome = view({"--camera", "-10,8,3000000", "--frame-budget", "0.01", "--settle", "--frames", "60",
+                             "--error", "2", "--stats", folder_.file("b.json")});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_EQ(jsonNumber(readFile(folder_.file("b.json")), "errorPixels"), 32);
 }

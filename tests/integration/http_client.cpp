@@ -86,15 +86,15 @@ bool HttpConnection::closedByServer() {
   return input_.empty() && ::recv(socket_, &byte, 1, 0) == 0;
 }
 
-std::optional<HttpAnswer> HttpConnection::read(bool withBody) {
+MaybeAnswer HttpConnection::read(bool withBody) {
   std::size_t end = std::string::npos;
   while ((end = input_.find("\r\n\r\n")) == std::string::npos)
-    if (!fill()) return std::nullopt;
+    if (!fill()) return {};
   const std::string head = input_.substr(0, end + 2);
   input_.erase(0, end + 4);
 
   HttpAnswer answer;
-  if (!head.starts_with("HTTP/1.1 ")) return std::nullopt;
+  if (!head.starts_with("HTTP/1.1 ")) return {};
   std::from_chars(head.data() + 9, head.data() + 12, answer.status);
   for (std::size_t line = head.find("\r\n") + 2; line < head.size();) {
     const std::size_t next = head.find("\r\n", line);
@@ -109,23 +109,22 @@ std::optional<HttpAnswer> HttpConnection::read(bool withBody) {
   if (const auto field = answer.fields.find("content-length"); field != answer.fields.end() && withBody)
     std::from_chars(field->second.data(), field->second.data() + field->second.size(), length);
   while (input_.size() < length)
-    if (!fill()) return std::nullopt;
+    if (!fill()) return {};
   answer.body = input_.substr(0, length);
   input_.erase(0, length);
   return answer;
 }
 
-std::optional<HttpAnswer> HttpConnection::request(std::string_view target, std::string_view method,
-                                                  std::string_view header) {
+MaybeAnswer HttpConnection::request(std::string_view target, std::string_view method, std::string_view header) {
   std::string text(method);
   text.append(" ").append(target).append(" HTTP/1.1\r\nHost: localhost\r\n").append(header).append("\r\n");
   send(text);
   return read(method != "HEAD");
 }
 
-std::optional<HttpAnswer> httpGet(std::string_view url, std::string_view target, std::string_view header) {
+MaybeAnswer httpGet(std::string_view url, std::string_view target, std::string_view header) {
   HttpConnection connection(url);
-  if (!connection.open()) return std::nullopt;
+  if (!connection.open()) return {};
   return connection.request(target, "GET", header);
 }
 

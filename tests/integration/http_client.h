@@ -3,9 +3,9 @@
 // wrong bytes, silence. Every read ends after ten seconds.
 
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace terrane::test {
 
@@ -13,6 +13,20 @@ struct HttpAnswer {
   int status = 0;
   std::map<std::string, std::string> fields;  ///< names in lower case
   std::string body;
+};
+
+/// An answer or none; none reads as an answer of status 0 without fields, so that a test that goes on fails rather than
+/// crashes.
+class MaybeAnswer {
+ public:
+  MaybeAnswer() = default;
+  MaybeAnswer(HttpAnswer answer) : answer_(std::move(answer)), given_(true) {}
+  explicit operator bool() const { return given_; }
+  const HttpAnswer* operator->() const { return &answer_; }
+
+ private:
+  HttpAnswer answer_;
+  bool given_ = false;
 };
 
 /// One connection to "http://127.0.0.1:1234" or "http://[::1]:1234".
@@ -30,12 +44,11 @@ class HttpConnection {
   /// Closes with a reset instead of a farewell.
   void abort();
   /// The next answer; empty if the server closed first or sent something else. withBody: false for an answer to HEAD.
-  std::optional<HttpAnswer> read(bool withBody = true);
+  MaybeAnswer read(bool withBody = true);
   /// True if the server closes the connection within the time limit without sending anything more.
   bool closedByServer();
   /// Sends "METHOD target" with a Host field and further header lines ("Name: value\r\n"), and reads the answer.
-  std::optional<HttpAnswer> request(std::string_view target, std::string_view method = "GET",
-                                    std::string_view header = {});
+  MaybeAnswer request(std::string_view target, std::string_view method = "GET", std::string_view header = {});
 
  private:
   bool fill();
@@ -45,7 +58,7 @@ class HttpConnection {
 };
 
 /// One request over a connection of its own.
-std::optional<HttpAnswer> httpGet(std::string_view url, std::string_view target, std::string_view header = {});
+MaybeAnswer httpGet(std::string_view url, std::string_view target, std::string_view header = {});
 
 /// Whether this machine has the IPv6 loopback address.
 bool ipv6LoopbackExists();

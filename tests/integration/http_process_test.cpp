@@ -211,6 +211,10 @@ TEST(ServerProgram, ExplainCountsExactlyWhatEachSceneNames) {
 
 // With few file descriptors the server cannot take every connection; it must take new ones again as soon as it can.
 TEST(ServerProgram, RunningOutOfFileDescriptorsDoesNotEndTheListener) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the undefined-behaviour sanitizer probes memory through a pipe, and without file descriptors takes "
+                  "all of it for bad";
+#endif
   ServerProcess server({"--scene", "smooth"}, "ulimit -n 24; ");
   {
     std::vector<std::unique_ptr<HttpConnection>> connections;

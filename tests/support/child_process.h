@@ -1,6 +1,6 @@
 #pragma once
-// A child process for tests that run the real binaries: started without a shell, its stdout and stderr kept in files of an own
-// temporary folder, ended with the object. POSIX; one thread at a time.
+// A child process for tests that run the real binaries: started without a shell, its stdout and stderr kept in files of
+// an own temporary folder, ended with the object. POSIX; one thread at a time.
 
 #include <fcntl.h>
 #include <signal.h>
@@ -92,7 +92,8 @@ class ChildProcess {
     }
   }
 
-  /// The text after a prefix on a line of stdout or stderr, once it is there; empty if the process ends or the time is over first.
+  /// The text after a prefix on a line of stdout or stderr, once it is there; empty if the process ends or the time is
+  /// over first.
   std::string waitForLine(const std::string& contained, std::chrono::milliseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
     for (;;) {

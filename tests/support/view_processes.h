@@ -19,7 +19,8 @@ inline std::string programFile(const std::string& name) { return std::string(TER
 /// A server on a port of the system's choosing. url is empty if it did not come up.
 struct RunningServer {
   explicit RunningServer(const std::string& scene, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> command{programFile("terrane-server"), "--scene", scene, "--listen", "127.0.0.1:0", "--threads", "2"};
+    std::vector<std::string> command{
+        programFile("terrane-server"), "--scene", scene, "--listen", "127.0.0.1:0", "--threads", "2"};
     command.insert(command.end(), more.begin(), more.end());
     process = std::make_unique<ChildProcess>(command);
     const std::string line = process->waitForLine("http://", std::chrono::seconds(30));
@@ -35,7 +36,8 @@ struct ViewOutcome {
   std::string output, errors;
 };
 
-inline ViewOutcome runView(const std::vector<std::string>& arguments, std::chrono::seconds limit = std::chrono::seconds(240)) {
+inline ViewOutcome runView(const std::vector<std::string>& arguments,
+                           std::chrono::seconds limit = std::chrono::seconds(240)) {
   std::vector<std::string> command{programFile("terrane-view")};
   command.insert(command.end(), arguments.begin(), arguments.end());
   ChildProcess process(command);

@@ -122,7 +122,8 @@ TEST(CameraControls, NothingBringsTheCameraBelowTheGround) {
     const ViewPose pose = controls.advance(input, moonView(), hills);
     for (const double value : {pose.longitude, pose.latitude, pose.altitudeMeters, pose.heading, pose.pitch})
       ASSERT_TRUE(std::isfinite(value)) << "seed " << kSeed << ", step " << i;
-    ASSERT_GE(pose.altitudeMeters, *hills(directionOf(pose.longitude, pose.latitude)) + kLowestHeightAboveGroundMeters - 1e-9)
+    ASSERT_GE(pose.altitudeMeters,
+              *hills(directionOf(pose.longitude, pose.latitude)) + kLowestHeightAboveGroundMeters - 1e-9)
         << "seed " << kSeed << ", step " << i;
     ASSERT_LE(pose.altitudeMeters, 60 * kRadius);
     ASSERT_LE(std::abs(pose.pitch), 90 * kDegree);

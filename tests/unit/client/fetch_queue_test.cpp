@@ -62,11 +62,17 @@ FetchOptions oneConnection() {
   return options;
 }
 
-FetchOptions impatient() {
+FetchOptions quickRetry() {
   FetchOptions options;
-  options.timeout = 100ms;
   options.firstBackoff = 10ms;
   options.longestBackoff = 40ms;
+  return options;
+}
+
+/// Only where a time-out is what is tested: a busy machine may well be silent for a tenth of a second.
+FetchOptions impatient() {
+  FetchOptions options = quickRetry();
+  options.timeout = 100ms;
   return options;
 }
 
@@ -94,8 +100,8 @@ TEST(FetchQueue, WrongUrlNamesTheFlag) {
 
 TEST(FetchQueue, ManyRequestsShareOneKeptConnection) {
   FakeServer server([](const std::string& target) { return FakeReply{.body = "body of " + target}; });
-  auto queue = openQueue(server.url(), oneConnection());
   Answers answers;
+  auto queue = openQueue(server.url(), oneConnection());
   for (int i = 0; i < 50; ++i) queue->fetch(numbered(i), i, answers.as(std::to_string(i)));
   ASSERT_TRUE(answers.waitFor(50));
   EXPECT_EQ(server.connections(), 1);
@@ -112,8 +118,8 @@ TEST(FetchQueue, NeverOpensMoreConnectionsThanAllowed) {
   FakeServer server([](const std::string&) { return FakeReply{.hold = true}; });
   FetchOptions options;
   options.connections = 3;
-  auto queue = openQueue(server.url(), options);
   Answers answers;
+  auto queue = openQueue(server.url(), options);
   for (int i = 0; i < 20; ++i) queue->fetch("/", i, answers.as(std::to_string(i)));
   ASSERT_TRUE(server.waitForHolding(3));
   EXPECT_EQ(queue->status().running, 3u);
@@ -125,8 +131,8 @@ TEST(FetchQueue, NeverOpensMoreConnectionsThanAllowed) {
 
 TEST(FetchQueue, LowerPriorityValuesGoFirstEvenIfTheyCameLast) {
   FakeServer server([](const std::string& target) { return FakeReply{.hold = target == "/first"}; });
-  auto queue = openQueue(server.url(), oneConnection());
   Answers answers;
+  auto queue = openQueue(server.url(), oneConnection());
   queue->fetch("/first", 99, answers.as("first"));
   ASSERT_TRUE(server.waitForHolding(1));
   queue->fetch("/c", 3, answers.as("c"));
@@ -141,8 +147,8 @@ TEST(FetchQueue, LowerPriorityValuesGoFirstEvenIfTheyCameLast) {
 
 TEST(FetchQueue, WhatWasCancelledInTheQueueIsNeverSent) {
   FakeServer server([](const std::string& target) { return FakeReply{.hold = target == "/first"}; });
-  auto queue = openQueue(server.url(), oneConnection());
   Answers answers;
+  auto queue = openQueue(server.url(), oneConnection());
   queue->fetch("/first", 0, answers.as("first"));
   ASSERT_TRUE(server.waitForHolding(1));
   const auto id = queue->fetch("/cancelled", 1, answers.as("cancelled"));
@@ -159,8 +165,8 @@ TEST(FetchQueue, CancellingARunningRequestClosesItsConnectionAndNoOther) {
   FakeServer server([](const std::string&) { return FakeReply{.body = "x", .hold = true}; });
   FetchOptions options;
   options.connections = 2;
-  auto queue = openQueue(server.url(), options);
   Answers answers;
+  auto queue = openQueue(server.url(), options);
   const auto id = queue->fetch("/cancelled", 0, answers.as("cancelled"));
   ASSERT_TRUE(server.waitForHolding(1));
   queue->fetch("/kept", 1, answers.as("kept"));
@@ -183,8 +189,8 @@ TEST(FetchQueue, AnAnswerThatIsNearlyThereIsReadToItsEndWhenCancelled) {
   FakeServer server([](const std::string& target) {
     return FakeReply{.body = std::string(1000, 'x'), .holdHalfway = target == "/small"};
   });
-  auto queue = openQueue(server.url(), oneConnection());
   Answers answers;
+  auto queue = openQueue(server.url(), oneConnection());
   const auto id = queue->fetch("/small", 0, answers.as("small"));
   ASSERT_TRUE(waitForStatus(*queue, [](const auto& s) { return s.bytesReceived >= 500; }));
   EXPECT_TRUE(queue->cancel(id));
@@ -200,8 +206,8 @@ TEST(FetchQueue, ALargeAnswerIsCutOffWhenCancelled) {
   FakeServer server([](const std::string& target) {
     return FakeReply{.body = std::string(1 << 20, 'x'), .holdHalfway = target == "/large"};
   });
-  auto queue = openQueue(server.url(), oneConnection());
   Answers answers;
+  auto queue = openQueue(server.url(), oneConnection());
   const auto id = queue->fetch("/large", 0, answers.as("large"));
   ASSERT_TRUE(waitForStatus(*queue, [](const auto& s) { return s.bytesReceived >= 1000; }));
   EXPECT_TRUE(queue->cancel(id));
@@ -213,29 +219,30 @@ TEST(FetchQueue, ALargeAnswerIsCutOffWhenCancelled) {
 
 TEST(FetchQueue, ReconnectsWhenTheServerClosedAnIdleConnection) {
   FakeServer server([](const std::string&) { return FakeReply{.body = "x", .closeAfter = true}; });
+  Answers answers;
   auto queue = openQueue(server.url(), oneConnection());
   for (int i = 0; i < 5; ++i) {
-    Answers answers;
-    queue->fetch(numbered(i), 0, answers.as("x"));
-    ASSERT_TRUE(answers.waitFor(1));
-    EXPECT_EQ(answers.response("x").status, 200) << answers.response("x").error.text();
+    queue->fetch(numbered(i), 0, answers.as(numbered(i)));
+    ASSERT_TRUE(answers.waitFor(static_cast<std::size_t>(i) + 1));
+    EXPECT_EQ(answers.response(numbered(i)).status, 200) << answers.response(numbered(i)).error.text();
   }
   EXPECT_TRUE(queue->status().reachable);
 }
 
 TEST(FetchQueue, RefusedConnectionIsReportedAndBacksOff) {
+  Answers answers;
   auto queue = openQueue("http://127.0.0.1:" + std::to_string(testing::unusedPort()), [] {
     FetchOptions options;
     options.firstBackoff = options.longestBackoff = 1h;
     return options;
   }());
-  Answers answers;
   for (int i = 0; i < 20; ++i) queue->fetch("/", i, answers.as(std::to_string(i)));
   ASSERT_TRUE(answers.waitFor(1));
   EXPECT_EQ(answers.response("0").status, 0);
   EXPECT_EQ(answers.response("0").error.kind, ErrorKind::Io);
   ASSERT_TRUE(waitForStatus(*queue, [](const auto& s) { return s.running == 0; }));
   const auto status = queue->status();
+  ASSERT_TRUE(answers.waitFor(status.requests));
   EXPECT_FALSE(status.reachable);
   EXPECT_FALSE(status.answered);
   EXPECT_GT(status.retryIn, 59min);
@@ -246,8 +253,8 @@ TEST(FetchQueue, RefusedConnectionIsReportedAndBacksOff) {
 
 TEST(FetchQueue, ComesBackByItselfWhenTheServerStarts) {
   const int port = testing::unusedPort();
-  auto queue = openQueue("http://127.0.0.1:" + std::to_string(port), impatient());
   Answers answers;
+  auto queue = openQueue("http://127.0.0.1:" + std::to_string(port), quickRetry());
   queue->fetch("/dead", 0, answers.as("dead"));
   ASSERT_TRUE(answers.waitFor(1));
   EXPECT_EQ(answers.response("dead").status, 0);
@@ -268,8 +275,8 @@ TEST(FetchQueue, ComesBackByItselfWhenTheServerStarts) {
 TEST(FetchQueue, SurvivesARestartOnTheSamePort) {
   auto first = std::make_unique<FakeServer>([](const std::string&) { return FakeReply{.body = "one"}; });
   const int port = first->port();
-  auto queue = openQueue(first->url(), impatient());
   Answers answers;
+  auto queue = openQueue(first->url(), quickRetry());
   queue->fetch("/", 0, answers.as("one"));
   ASSERT_TRUE(answers.waitFor(1));
   first.reset();
@@ -281,8 +288,8 @@ TEST(FetchQueue, SurvivesARestartOnTheSamePort) {
 
 TEST(FetchQueue, SilenceBecomesATimeout) {
   FakeServer server([](const std::string&) { return FakeReply{.hold = true}; });
-  auto queue = openQueue(server.url(), impatient());
   Answers answers;
+  auto queue = openQueue(server.url(), impatient());
   queue->fetch("/", 0, answers.as("x"));
   ASSERT_TRUE(answers.waitFor(1));
   EXPECT_EQ(answers.response("x").status, 0);
@@ -293,8 +300,8 @@ TEST(FetchQueue, SilenceBecomesATimeout) {
 
 TEST(FetchQueue, WhileNothingAnswersOneRequestAtATimeIsTried) {
   FakeServer server([](const std::string&) { return FakeReply{.hold = true}; });
-  auto queue = openQueue(server.url(), impatient());
   Answers answers;
+  auto queue = openQueue(server.url(), impatient());
   for (int i = 0; i < 12; ++i) queue->fetch("/", i, answers.as(std::to_string(i)));
   ASSERT_TRUE(answers.waitFor(6));  // the first six were sent before anybody knew
   ASSERT_TRUE(server.waitForRequests(8));
@@ -307,8 +314,8 @@ TEST(FetchQueue, ABusyServerIsLeftAloneAsLongAsItAsks) {
   FakeServer server([](const std::string& target) {
     return target == "/busy" ? FakeReply{.status = 503, .headers = "Retry-After: 3600\r\n"} : FakeReply{};
   });
-  auto queue = openQueue(server.url(), oneConnection());
   Answers answers;
+  auto queue = openQueue(server.url(), oneConnection());
   queue->fetch("/busy", 0, answers.as("busy"));
   queue->fetch("/waits", 1, answers.as("waits"));
   ASSERT_TRUE(answers.waitFor(1));
@@ -331,24 +338,24 @@ TEST(FetchQueue, NonsenseHalfAnswersAndGiantsAreErrorsOfTheirKind) {
     if (target == "/closed") reply.raw = "\r";
     return reply;
   });
-  FetchOptions options = impatient();
+  FetchOptions options = quickRetry();
   options.maxBodyBytes = 2000;
+  Answers answers;
+  std::size_t asked = 0;
   auto queue = openQueue(server.url(), options);
   const std::map<std::string, ErrorKind> expected{{"/nonsense", ErrorKind::Malformed},
                                                   {"/half", ErrorKind::Io},
                                                   {"/giant", ErrorKind::TooLarge},
                                                   {"/lie", ErrorKind::TooLarge}};
   for (const auto& [target, kind] : expected) {
-    Answers answers;
     queue->fetch(target, 0, answers.as(target));
-    ASSERT_TRUE(answers.waitFor(1));
+    ASSERT_TRUE(answers.waitFor(++asked));
     EXPECT_EQ(answers.response(target).status, 0) << target;
     EXPECT_EQ(answers.response(target).error.kind, kind) << target << ": " << answers.response(target).error.text();
     EXPECT_TRUE(answers.response(target).body.empty()) << target;
   }
-  Answers answers;
   queue->fetch("/fine", 0, answers.as("fine"));
-  ASSERT_TRUE(answers.waitFor(1));
+  ASSERT_TRUE(answers.waitFor(++asked));
   EXPECT_EQ(answers.response("fine").status, 200);
 }
 
@@ -356,8 +363,8 @@ TEST(FetchQueue, ChunkedAnswersAreRead) {
   FakeServer server([](const std::string&) {
     return FakeReply{.raw = "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n2\r\nde\r\n0\r\n\r\n"};
   });
-  auto queue = openQueue(server.url());
   Answers answers;
+  auto queue = openQueue(server.url());
   queue->fetch("/", 0, answers.as("x"));
   ASSERT_TRUE(answers.waitFor(1));
   EXPECT_EQ(text(answers.response("x")), "abcde");
@@ -365,8 +372,8 @@ TEST(FetchQueue, ChunkedAnswersAreRead) {
 
 TEST(FetchQueue, DelayedRequestsWaitTheirTime) {
   FakeServer server([](const std::string&) { return FakeReply{}; });
-  auto queue = openQueue(server.url(), oneConnection());
   Answers answers;
+  auto queue = openQueue(server.url(), oneConnection());
   queue->fetch("/late", 0, answers.as("late"), 1h);
   const auto soon = std::chrono::steady_clock::now();
   queue->fetch("/soon", 1, answers.as("soon"), 30ms);
@@ -398,9 +405,9 @@ TEST(FetchQueue, DestructionInTheMiddleOfEverythingCallsNothingBack) {
 
 TEST(FetchQueue, HammeredFromSeveralThreadsEveryRequestEndsOnce) {
   FakeServer server([](const std::string&) { return FakeReply{.body = "x"}; });
-  auto queue = openQueue(server.url());
   constexpr int kThreads = 4, kEach = 100;
   std::atomic<int> answered{0}, cancelled{0};
+  auto queue = openQueue(server.url());
   std::vector<std::thread> threads;
   for (int t = 0; t < kThreads; ++t) {
     threads.emplace_back([&, t] {

@@ -8,7 +8,9 @@ namespace terrane {
 namespace {
 
 // A machine whose frames cost a fixed part and a part that falls with the square of the error.
-double frameMs(double fixedMs, double detailMs, double errorPixels) { return fixedMs + detailMs * 4 / (errorPixels * errorPixels); }
+double frameMs(double fixedMs, double detailMs, double errorPixels) {
+  return fixedMs + detailMs * 4 / (errorPixels * errorPixels);
+}
 
 TEST(FrameBudget, OffByDefaultItNeverTouchesTheError) {
   FrameBudget budget(0, 2);

@@ -1,4 +1,4 @@
-#include "client/app/readable_units.h"
+#include "client/render/readable_units.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,8 @@ namespace {
 // 0.2, 1.25, 12.5, 125, 1250: at least three digits before rounding, no trailing zeros.
 std::string shortNumber(double value) {
   const double size = std::abs(value);
-  if (size >= 9999.5) return fmt::format("{}{}", value < 0 ? "-" : "", countText(static_cast<std::uint64_t>(std::llround(size))));
+  if (size >= 9999.5)
+    return fmt::format("{}{}", value < 0 ? "-" : "", countText(static_cast<std::uint64_t>(std::llround(size))));
   std::string text = fmt::format("{:.{}f}", value, size < 9.995 ? 2 : size < 99.95 ? 1 : 0);
   if (text.find('.') != std::string::npos) {
     text.erase(text.find_last_not_of('0') + 1);
