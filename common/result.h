@@ -1,6 +1,6 @@
 #pragma once
-// Result<T>: what every function returns that can fail on input. No exceptions cross a public function of Terrane; those of
-// libraries are caught where the library is called. Values of these types may be moved between threads.
+// Result<T>: what every function returns that can fail on input. No exceptions cross a public function of Terrane;
+// those of libraries are caught where the library is called. Values of these types may be moved between threads.
 
 #include <boost/system/result.hpp>
 #include <cstdint>
@@ -21,13 +21,14 @@ enum class ErrorKind : std::uint8_t {
   Overloaded,   ///< try again later
   Timeout,
   Cancelled,
-  Io,           ///< file, socket, display
-  Internal,     ///< a bug, or memory ran out
+  Io,        ///< file, socket, display
+  Internal,  ///< a bug, or memory ran out
 };
 
 std::string_view errorKindName(ErrorKind kind) noexcept;
 
-/// field names what was wrong as the user wrote it: a flag ("--listen"), a key ("body[0].radius"), a part of a URL ("face").
+/// field names what was wrong as the user wrote it: a flag ("--listen"), a key ("body[0].radius"), a part of a URL
+/// ("face").
 struct Error {
   ErrorKind kind = ErrorKind::Internal;
   std::string field;

@@ -112,7 +112,8 @@ void VertexArray::attach(const Buffer& vertices, std::size_t stride, std::span<c
   bind();
   vertices.bind(BufferTarget::Vertices);
   for (const VertexAttribute& attribute : attributes) {
-    const void* offset = reinterpret_cast<const void*>(attribute.offset);
+    // GL takes offsets as pointers.
+    const void* offset = reinterpret_cast<const void*>(attribute.offset);  // NOLINT(performance-no-int-to-ptr)
     const auto glStride = static_cast<GLsizei>(stride);
     glEnableVertexAttribArray(attribute.location);
     if (attribute.conversion == Conversion::Integer) {

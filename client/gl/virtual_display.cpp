@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
+#include <system_error>
 #include <utility>
 
 namespace terrane {
@@ -96,13 +96,15 @@ void stopProcess(pid_t process) {
   _exit(127);
 }
 
+std::string systemText(int code) { return std::error_code(code, std::generic_category()).message(); }
+
 Error displayError(std::string message) { return makeError(ErrorKind::Io, "display", std::move(message)); }
 
 }  // namespace
 
 Result<VirtualDisplay> VirtualDisplay::start(int widthPixels, int heightPixels) {
   Pipe display, failure;
-  if (!display.open() || !failure.open()) return displayError(fmt::format("no pipe: {}", std::strerror(errno)));
+  if (!display.open() || !failure.open()) return displayError(fmt::format("no pipe: {}", systemText(errno)));
 
   std::string program = "Xvfb", displayFlag = "-displayfd", displayValue = std::to_string(display.writeEnd),
               screen = "-screen", number = "0",
@@ -112,7 +114,7 @@ Result<VirtualDisplay> VirtualDisplay::start(int widthPixels, int heightPixels) 
                              size.data(),    closed.data(),      protocol.data(),     stay.data(),   nullptr};
   const pid_t parent = getpid();
   const pid_t process = fork();
-  if (process < 0) return displayError(fmt::format("cannot start Xvfb: {}", std::strerror(errno)));
+  if (process < 0) return displayError(fmt::format("cannot start Xvfb: {}", systemText(errno)));
   if (process == 0) becomeServer(parent, display.writeEnd, failure.writeEnd, arguments);
   display.closeWrite();
   failure.closeWrite();
@@ -124,9 +126,8 @@ Result<VirtualDisplay> VirtualDisplay::start(int widthPixels, int heightPixels) 
   } while (count < 0 && errno == EINTR);
   if (count == sizeof reason) {
     waitpid(process, nullptr, 0);
-    return displayError(reason == ENOENT
-                            ? "no DISPLAY and Xvfb is not installed"
-                            : fmt::format("no DISPLAY and Xvfb does not start: {}", std::strerror(reason)));
+    return displayError(reason == ENOENT ? "no DISPLAY and Xvfb is not installed"
+                                         : fmt::format("no DISPLAY and Xvfb does not start: {}", systemText(reason)));
   }
   std::string line = readLine(display.readEnd, Clock::now() + kStartLimit);
   if (line.empty() || line.back() != '\n') {

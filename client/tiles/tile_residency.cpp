@@ -21,7 +21,7 @@ void TileResidency::add(const std::shared_ptr<const Tile>& tile, const std::stri
   }
   Resident& resident = at->second;
   bytes_ -= resident.bytes;
-  resident.info = ResidentTile{tile->metadata.subtreeHeights};
+  resident.info = ResidentTile{tile->metadata.subtreeHeights, tile->metadata.heights};
   resident.revision = revision;
   resident.ground = GroundMesh::fromTile(*tile);
   resident.mesh = tile;

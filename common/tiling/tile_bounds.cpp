@@ -182,7 +182,7 @@ TileBounds tileBounds(const FacePath& path, double radiusMeters, const HeightRan
   const double rHigh = radiusMeters + heights.maxMeters + step;
   if (!(rLow > 64.0 * step)) return wholeBodyBounds(rHigh);
 
-  const Footprint footprint = footprintOf(path, tangentPlaneMargin(step, rLow));
+  const Footprint footprint = footprintOf(path, tangentPlaneMargin((1.0 + kSkirtFlareSteps) * step, rLow));
   TileBounds bounds;
   bounds.hull = hullOf(footprint, rLow, rHigh);
   bounds.box = boxOf(footprint, rLow, rHigh);

@@ -29,6 +29,10 @@ struct OrientedBox {
   std::array<glm::dvec3, 3> halfAxes{};
 };
 
+/// The lower ends of skirts lean outwards by this many lattice steps, so that the hairline which rasterisation may
+/// leave along a border of two levels is closed also when one looks straight down it. Bounds make room for them.
+inline constexpr double kSkirtFlareSteps = 2.0;
+
 struct TileBounds {
   /// The tile lies within the convex hull of these: corners (u, v) = 00 10 01 11 of the inner face, then of the outer
   /// face. The four side faces are great-circle planes, as the tile's own edges are.

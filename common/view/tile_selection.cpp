@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "common/view/frustum.h"
 #include "common/view/horizon.h"
@@ -59,7 +60,11 @@ class Selector {
         horizon_(camera.positionBody, body.radiusMeters, camera.altitudeMeters, body.occluderRadiusMeters) {}
 
   TileSelection run() {
-    growWantedTree();
+    // A tile that must be refined makes its coarser neighbours refine first. Each round adds to the forced tiles, and a
+    // level forces only the one above it, so there are no more rounds than levels.
+    do {
+      startOver();
+    } while (!growWantedTree());
     markNeeded();
     cutDrawnTree();
     return result();
@@ -118,8 +123,18 @@ class Selector {
   }
 
   bool wantsChildren(const Node& node) const {
-    return node.errorPixels > settings_.errorPixels && node.path.level() < body_.maxLevel &&
-           node.guesses <= kMostGuesses;
+    return node.path.level() < body_.maxLevel &&
+           ((node.errorPixels > settings_.errorPixels && node.guesses <= kMostGuesses) ||
+            (!forced_.empty() && forced_.contains(node.path)));
+  }
+
+  void startOver() {
+    nodes_.clear();
+    neighbours_.clear();
+    levelStart_.clear();
+    currentLevel_.clear();
+    previousLevel_.clear();
+    visibleCount_ = 0;
   }
 
   TileBounds boundsOf(const FacePath& path, const HeightRange& heights) const {
@@ -136,7 +151,9 @@ class Selector {
     return errors.empty() ? 0.0 : errors[std::min(static_cast<std::size_t>(level), errors.size() - 1)];
   }
 
-  void growWantedTree() {
+  /// False if tiles were forced that this round had already passed: then it must be done again.
+  bool growWantedTree() {
+    const std::size_t forcedBefore = forced_.size();
     for (int face = 0; face < faceCount(body_.scheme); ++face) addRoot(face);
     levelStart_ = {0, static_cast<int>(nodes_.size())};
     for (int level = 0; level < body_.maxLevel && levelStart_[level] < levelStart_[level + 1]; ++level) {
@@ -144,11 +161,21 @@ class Selector {
       for (const int index : candidates(level)) {
         if (visibleCount_ + 4 > settings_.maxTiles) break;
         const std::array<int, kSideCount> around = neighbours(index);
-        if (std::any_of(around.begin(), around.end(), [](int n) { return n == kCoarser; })) continue;
-        refine(index, around);
+        if (std::any_of(around.begin(), around.end(), [](int n) { return n == kCoarser; })) {
+          forceCoarserNeighbours(index, around);
+        } else {
+          refine(index, around);
+        }
       }
       levelStart_.push_back(static_cast<int>(nodes_.size()));
     }
+    return forced_.size() == forcedBefore;
+  }
+
+  void forceCoarserNeighbours(int index, const std::array<int, kSideCount>& around) {
+    for (int side = 0; side < kSideCount; ++side)
+      if (around[static_cast<std::size_t>(side)] == kCoarser)
+        forced_.insert(at(index).path.neighbour(static_cast<Side>(side))->parent());
   }
 
   /// Tiles of a level whose error is too large. Worst first, so that the bound on the work cuts where it shows least.
@@ -267,6 +294,7 @@ class Selector {
   std::vector<int> neighbours_;
   std::vector<int> levelStart_;  ///< levelStart_[l] .. levelStart_[l + 1]: the nodes of level l
   std::unordered_map<FacePath, int> currentLevel_, previousLevel_;
+  std::unordered_set<FacePath> forced_;  ///< refined only so that a finer neighbour may be
   int visibleCount_ = 0;
   bool rootsMissing_ = false;
 };

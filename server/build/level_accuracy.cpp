@@ -27,7 +27,7 @@ double sagMeters(double cell, double lowestRadius, double heightSpan) noexcept {
 }  // namespace
 
 double skirtMarginMeters(double radiusMeters, int level) noexcept {
-  return 3.0 * 0.8660254037844387 * stepMeters(stepExponent(radiusMeters, level));
+  return (3.0 * 0.8660254037844387 + 2.0 * kSkirtFlareSteps) * stepMeters(stepExponent(radiusMeters, level));
 }
 
 std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, int cellsPerEdge,

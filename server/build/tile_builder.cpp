@@ -1,12 +1,14 @@
 #include "server/build/tile_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <span>
 #include <utility>
 
 #include "common/numerics/strict_math.h"
+#include "common/tiling/cube_sphere.h"
 #include "proto/gltf_tile.h"
 #include "server/build/grid_directions.h"
 #include "server/build/level_accuracy.h"
@@ -57,19 +59,38 @@ HeightRange rangeOf(const std::vector<double>& heights) {
   return {*lowest, *highest};
 }
 
-/// Where the grid's vertices and the skirts below them fall on the lattice.
-void placeVertices(const BuildScratch& memory, const TileTopology& topology, double radiusMeters, int exponent,
-                   std::vector<LatticePoint>& out) {
+/// Unit outward normals of the great-circle planes through a tile's edges, in the order of the skirts: VMin, UMax,
+/// VMax, UMin.
+std::array<glm::dvec3, kEdgeCount> outwardNormals(const FacePath& path) {
+  const FaceAxes& axes = cubeFaceAxes(path.face());
+  const auto tangent = [&](std::uint32_t line) { return tanQuarterPi(std::ldexp(line, 1 - path.level()) - 1.0); };
+  const auto normal = [&](const glm::dvec3& along, double t, double sign) {
+    const glm::dvec3 n = along - axes.normal * t;
+    return n * (sign / std::sqrt((n.x * n.x + n.y * n.y) + n.z * n.z));
+  };
+  return {normal(axes.v, tangent(path.row()), -1.0), normal(axes.u, tangent(path.column() + 1), 1.0),
+          normal(axes.v, tangent(path.row() + 1), 1.0), normal(axes.u, tangent(path.column()), -1.0)};
+}
+
+/// Where the grid's vertices and the skirts below them fall on the lattice. Skirts lean outwards (kSkirtFlareSteps).
+void placeVertices(const FacePath& path, const BuildScratch& memory, const TileTopology& topology, double radiusMeters,
+                   int exponent, std::vector<LatticePoint>& out) {
   const GridDirections& at = memory.directions;
-  const auto place = [&](std::size_t vertex, double height) {
+  const auto position = [&](std::size_t vertex, double height) {
     const double radius = radiusMeters + height;
-    return roundToLattice({at.x[vertex] * radius, at.y[vertex] * radius, at.z[vertex] * radius}, exponent);
+    return glm::dvec3{at.x[vertex] * radius, at.y[vertex] * radius, at.z[vertex] * radius};
   };
   const std::vector<double>& heights = memory.samples.heightMeters;
   out.clear();
-  for (std::size_t vertex = 0; vertex < heights.size(); ++vertex) out.push_back(place(vertex, heights[vertex]));
-  for (std::size_t k = 0; k < topology.skirtAnchors.size(); ++k)
-    out.push_back(place(topology.skirtAnchors[k], memory.skirtHeights[k]));
+  for (std::size_t vertex = 0; vertex < heights.size(); ++vertex)
+    out.push_back(roundToLattice(position(vertex, heights[vertex]), exponent));
+  const auto outward = outwardNormals(path);
+  const double flare = kSkirtFlareSteps * stepMeters(exponent);
+  const auto perEdge = static_cast<std::size_t>(topology.cellsPerEdge) + 1;
+  for (std::size_t k = 0; k < topology.skirtAnchors.size(); ++k) {
+    const glm::dvec3 below = position(topology.skirtAnchors[k], memory.skirtHeights[k]);
+    out.push_back(roundToLattice(below + outward[k / perEdge] * flare, exponent));
+  }
 }
 
 /// Offsets from the componentwise smallest point, which becomes the origin. False if one does not fit into 16 bits.
@@ -231,7 +252,7 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   const auto meshStart = Clock::now();
   Tile tile;
   tile.metadata.stepExponent = stepExponent(radius, path.level());
-  placeVertices(memory, *topology, radius, tile.metadata.stepExponent, memory.lattice);
+  placeVertices(path, memory, *topology, radius, tile.metadata.stepExponent, memory.lattice);
   if (!offsetsFromOrigin(memory.lattice, tile.metadata.origin, tile.mesh.offsets))
     return makeError(ErrorKind::TooLarge, "digits",
                      path.text() + " of " + body.name + " is steeper than 16 bits of its lattice can hold");

@@ -59,7 +59,8 @@ std::vector<Vertex> cameraRelativeVertices(const Camera& camera, const Tile& til
 
 BareLoop::BareLoop(const Camera& camera, const std::vector<std::shared_ptr<const Tile>>& tiles) {
   program_ = glCreateProgram();
-  for (const auto& [kind, source] : {std::pair{GL_VERTEX_SHADER, kVertexShader}, std::pair{GL_FRAGMENT_SHADER, kFragmentShader}}) {
+  for (const auto& [kind, source] :
+       {std::pair{GL_VERTEX_SHADER, kVertexShader}, std::pair{GL_FRAGMENT_SHADER, kFragmentShader}}) {
     const unsigned shader = compile(static_cast<GLenum>(kind), source);
     glAttachShader(program_, shader);
     glDeleteShader(shader);
@@ -79,13 +80,15 @@ BareLoop::BareLoop(const Camera& camera, const std::vector<std::shared_ptr<const
     glBindVertexArray(mesh.vertexArray);
     glGenBuffers(1, &mesh.vertices);
     glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(), GL_STATIC_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                 GL_STATIC_DRAW);
     glGenBuffers(1, &mesh.indices);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices);
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 2), indices.data(), GL_STATIC_DRAW);
     const auto pointer = [](unsigned index, int size, GLenum type, bool normalized, std::size_t offset) {
       glEnableVertexAttribArray(index);
-      glVertexAttribPointer(index, size, type, normalized ? GL_TRUE : GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
+      glVertexAttribPointer(index, size, type, normalized ? GL_TRUE : GL_FALSE, sizeof(Vertex),
+                            reinterpret_cast<const void*>(offset));
     };
     pointer(0, 3, GL_FLOAT, false, offsetof(Vertex, position));
     pointer(1, 3, GL_FLOAT, false, offsetof(Vertex, normal));

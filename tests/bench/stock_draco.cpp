@@ -11,15 +11,16 @@ namespace terrane::bench {
 namespace {
 
 template <class T>
-int addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType dataType, int components, bool normalized,
-                 const T* values) {
+int addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType dataType, int components,
+                 bool normalized, const T* values) {
   const auto count = mesh.num_points();
   draco::GeometryAttribute description;
   description.Init(type, nullptr, static_cast<std::int8_t>(components), dataType, normalized,
                    static_cast<std::int64_t>(sizeof(T)) * components, 0);
   const int id = mesh.AddAttribute(description, true, count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), values + static_cast<std::size_t>(i) * components);
+    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i),
+                                          values + static_cast<std::size_t>(i) * components);
   }
   return id;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The yardstick for tile builds: Draco as its own tools use it, on the very mesh of a tile. Edgebreaker, 16-bit positions, the tile's own
-// normal width, colours and grid index as they are.
+// The yardstick for tile builds: Draco as its own tools use it, on the very mesh of a tile. Edgebreaker, 16-bit
+// positions, the tile's own normal width, colours and grid index as they are.
 
 #include <cstddef>
 

@@ -72,7 +72,9 @@ int main(int argc, char** argv) {
   const TileBuilder builder(scene->bodies.front(), wire, bestSimdPath());
   std::mt19937_64 random(20260101);
 
-  fmt::print("| level | field ms | mesh ms | Draco ms | GLB ms | tile ms | stock Draco ms (with de-duplication) | tile / stock | KB |\n");
+  fmt::print(
+      "| level | field ms | mesh ms | Draco ms | GLB ms | tile ms | stock Draco ms (with de-duplication) | tile / "
+      "stock | KB |\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|\n");
   std::vector<double> ratios;
   for (int level = 0; level <= std::min(24, builder.info().selection.maxLevel); level += 2) {
@@ -84,12 +86,14 @@ int main(int argc, char** argv) {
     }
     const double ratio = median(row.total) / median(row.stock);
     ratios.push_back(ratio);
-    fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.2f} | {:.2f} ({:.2f}) | {:.2f} | {:.1f} |\n", level, median(row.field),
-               median(row.mesh), median(row.draco), median(row.glb), median(row.total), median(row.stock),
-               median(row.stockDeduplicated), ratio, median(row.bytes) / 1024);
+    fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.2f} | {:.2f} ({:.2f}) | {:.2f} | {:.1f} |\n", level,
+               median(row.field), median(row.mesh), median(row.draco), median(row.glb), median(row.total),
+               median(row.stock), median(row.stockDeduplicated), ratio, median(row.bytes) / 1024);
   }
-  fmt::print("\nMedian of the ratios: {:.2f}; largest: {:.2f}. {} tiles a level, one core, SIMD path {}.\n", median(ratios),
-             *std::max_element(ratios.begin(), ratios.end()), tiles,
-             bestSimdPath() == SimdPath::V4 ? "v4" : bestSimdPath() == SimdPath::V3 ? "v3" : "default");
+  fmt::print("\nMedian of the ratios: {:.2f}; largest: {:.2f}. {} tiles a level, one core, SIMD path {}.\n",
+             median(ratios), *std::max_element(ratios.begin(), ratios.end()), tiles,
+             bestSimdPath() == SimdPath::V4   ? "v4"
+             : bestSimdPath() == SimdPath::V3 ? "v3"
+                                              : "default");
   return 0;
 }

@@ -1,5 +1,5 @@
-// A viewer's frame (select, place, draw) beside a bare loop that draws the same triangles, in turn, in one run, at three views of the
-// Moon. Usage: bench_viewer [--frames N]; prints a Markdown table of medians.
+// A viewer's frame (select, place, draw) beside a bare loop that draws the same triangles, in turn, in one run, at
+// three views of the Moon. Usage: bench_viewer [--frames N]; prints a Markdown table of medians.
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -70,7 +70,8 @@ TileSelection settle(const TileBuilder& builder, const Camera& camera, Tiles& ti
   }
 }
 
-void measureView(const char* name, const ViewPose& pose, const TileBuilder& builder, TileRenderer& renderer, int frames) {
+void measureView(const char* name, const ViewPose& pose, const TileBuilder& builder, TileRenderer& renderer,
+                 int frames) {
   const Camera camera = cameraFromPose(pose, builder.body().radiusMeters, 60 * kDegrees, kWidth, kHeight);
   Tiles tiles;
   std::unordered_map<FacePath, ResidentTile> resident;
@@ -92,7 +93,10 @@ void measureView(const char* name, const ViewPose& pose, const TileBuilder& buil
     triangles = renderer.draw(camera, chosen.draw, {}).triangles;
   };
   const auto bareFrame = [&] { bare.draw(); };
-  for (int i = 0; i < 3; ++i) { timeMs(viewerFrame); timeMs(bareFrame); }
+  for (int i = 0; i < 3; ++i) {
+    timeMs(viewerFrame);
+    timeMs(bareFrame);
+  }
   std::vector<double> viewer, bareTimes, ratios, select;
   for (int i = 0; i < frames; ++i) {
     viewer.push_back(timeMs(viewerFrame));
@@ -100,8 +104,8 @@ void measureView(const char* name, const ViewPose& pose, const TileBuilder& buil
     ratios.push_back(viewer.back() / bareTimes.back());
     select.push_back(timeMs([&] { selectTiles(camera, builder.info().selection, lookup, {}); }));
   }
-  fmt::print("| {} | {} | {} | {:.1f} | {:.2f} | {:.1f} | {:.2f} |\n", name, drawn.size(), triangles, median(viewer), median(select),
-             median(bareTimes), median(ratios));
+  fmt::print("| {} | {} | {} | {:.1f} | {:.2f} | {:.1f} | {:.2f} |\n", name, drawn.size(), triangles, median(viewer),
+             median(select), median(bareTimes), median(ratios));
 }
 
 }  // namespace
@@ -127,9 +131,12 @@ int main(int argc, char** argv) {
   const Camera above = cameraFromPose({longitude, latitude, 1, 0, 0}, builder.body().radiusMeters, 1, kWidth, kHeight);
   const double ground = groundHeightMeters(builder.body(), above.positionBody / builder.body().radiusMeters);
 
-  fmt::print("| view | tiles | triangles | frame ms | of it selection ms | bare loop ms | frame / bare |\n|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| view | tiles | triangles | frame ms | of it selection ms | bare loop ms | frame / bare "
+      "|\n|---|---|---|---|---|---|---|\n");
   measureView("orbit, 1,000 km", {longitude, latitude, 1.0e6, 0, -60 * kDegrees}, builder, **renderer, frames);
-  measureView("1 km above ground", {longitude, latitude, ground + 1000, 0, -20 * kDegrees}, builder, **renderer, frames);
+  measureView("1 km above ground", {longitude, latitude, ground + 1000, 0, -20 * kDegrees}, builder, **renderer,
+              frames);
   measureView("2 m above ground", {longitude, latitude, ground + 2, 0, -15 * kDegrees}, builder, **renderer, frames);
   fmt::print("\nMedians of {} frames in turn with the bare loop; ratio pair by pair; {}.\n", frames,
              (*renderer)->selfTest().renderer);

@@ -253,7 +253,7 @@ TEST(TileBounds, EveryBuildComputesTheSameBits) {
     mix(bounds.horizonPoint);
     mix(glm::dvec3(bounds.sphere.radiusMeters, lowestSurfaceRadiusMeters(1737400.0, -9000.0, 64), 0));
   }
-  EXPECT_EQ(hash, 9357735559605596566u);
+  EXPECT_EQ(hash, 3137277706745409617u);
 }
 
 // ---- horizon ----

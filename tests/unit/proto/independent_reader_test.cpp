@@ -1,5 +1,5 @@
-// A reader that shares no code with ours, tinygltf with libdraco, must see the very lattice offsets that were encoded: what any glTF
-// client gets.
+// A reader that shares no code with ours, tinygltf with libdraco, must see the very lattice offsets that were encoded:
+// what any glTF client gets.
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -12,6 +12,7 @@
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #define TINYGLTF_NO_INCLUDE_JSON
 #include <nlohmann/json.hpp>
+
 #include <tiny_gltf.h>
 #pragma GCC diagnostic pop
 
@@ -29,7 +30,8 @@ namespace terrane {
 namespace {
 
 template <class T>
-std::vector<T> valuesOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const std::string& name, int components) {
+std::vector<T> valuesOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const std::string& name,
+                        int components) {
   const auto& accessor = model.accessors[static_cast<std::size_t>(primitive.attributes.at(name))];
   const auto& view = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
   const auto& bytes = model.buffers[static_cast<std::size_t>(view.buffer)].data;
@@ -47,7 +49,8 @@ TEST(IndependentReader, SeesTheVeryLatticePositionsThatWereEncoded) {
   tinygltf::TinyGLTF reader;
   tinygltf::Model model;
   std::string error, warning;
-  ASSERT_TRUE(reader.LoadBinaryFromMemory(&model, &error, &warning, glb->data(), static_cast<unsigned>(glb->size()))) << error;
+  ASSERT_TRUE(reader.LoadBinaryFromMemory(&model, &error, &warning, glb->data(), static_cast<unsigned>(glb->size())))
+      << error;
   EXPECT_EQ(warning, "");
 
   ASSERT_EQ(model.meshes.size(), 1u);
@@ -66,11 +69,13 @@ TEST(IndependentReader, SeesTheVeryLatticePositionsThatWereEncoded) {
     const std::size_t expected = vertexOfGrid.at(grid[i]);
     glm::dvec3 local;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ASSERT_EQ(positions[3 * i + axis], static_cast<float>(tile.mesh.offsets[3 * expected + axis])) << "grid index " << grid[i];
+      ASSERT_EQ(positions[3 * i + axis], static_cast<float>(tile.mesh.offsets[3 * expected + axis]))
+          << "grid index " << grid[i];
       local[static_cast<int>(axis)] = static_cast<double>(positions[3 * i + axis]);
     }
     // glTF's Y-up (X, Z, -Y) back to the body frame: exactly origin + offset * step.
-    const glm::dvec3 placed{matrix[0] * local.x + matrix[12], -(matrix[6] * local.y + matrix[14]), matrix[9] * local.z + matrix[13]};
+    const glm::dvec3 placed{matrix[0] * local.x + matrix[12], -(matrix[6] * local.y + matrix[14]),
+                            matrix[9] * local.z + matrix[13]};
     ASSERT_EQ(placed.x, origin.x + local.x * step);
     ASSERT_EQ(placed.y, origin.y + local.y * step);
     ASSERT_EQ(placed.z, origin.z + local.z * step);
