@@ -8,6 +8,12 @@ target_compile_options(terrane_flags INTERFACE
 target_compile_definitions(terrane_flags INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE_EXPLICIT_CTOR)
 target_include_directories(terrane_flags INTERFACE ${CMAKE_SOURCE_DIR})
 
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12's optimiser warns of overlaps and overflows inside std::string and fmt that cannot happen (GCC bug 105329 and its kin), differently
+  # at every optimisation level; the sanitizers look for the real ones.
+  target_compile_options(terrane_flags INTERFACE -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds
+    -Wno-maybe-uninitialized)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   target_compile_options(terrane_flags INTERFACE -Wno-shorten-64-to-32 -Wno-implicit-int-float-conversion)
 endif()
@@ -25,5 +31,6 @@ endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  # Relative paths, so that another checkout of the same sources hits too.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE_PROGRAM})
 endif()
