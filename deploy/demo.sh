@@ -39,7 +39,7 @@ echo "demo: serving the Moon on $url"
 
 headless=(--headless)
 [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && headless=()
-"$bin/terrane-view" --server "$url" "${headless[@]}" --size "$size" --flight descent --settle --cache none \
+"$bin/terrane-view" --server "$url" "${headless[@]}" --size "$size" --flight descent --settle --step 4 --cache none \
   --capture "$output/descent-%d.png" --stats "$output/stats.json"
 
 echo
