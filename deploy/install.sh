@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Terrane needs to build, test and run on Debian 12. Safe to call again: when all is there it only looks.
-# Usage: deploy/install.sh [--runtime]     (--runtime: only what the demo needs is still the full build set; kept as one list)
+# Usage: deploy/install.sh
 set -euo pipefail
 
 packages=(
