@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "common/scene/scene.h"
+#include "server/build/heap_policy.h"
 #include "server/explain.h"
 #include "server/http/http_server.h"
 #include "server/http/tile_service.h"
@@ -71,6 +72,7 @@ void watchSignals(HttpServer* server, TileService* service) {
 }
 
 int serve(const Scene& scene, const ServerSettings& settings) {
+  keepFreedMemory();
   raiseDescriptorLimit(settings.http.maxConnections);
   // Blocked before any thread starts, so that only sigwait sees them.
   const sigset_t signals = endingSignals();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 namespace terrane {
@@ -90,7 +91,7 @@ void TileProgram::begin(const Camera& camera, const EffectList& effects) {
   setUniform(cameraHigh_, split.high);
   setUniform(cameraLow_, split.low);
   if (purpose_ == TilePurpose::Shaded) {
-    setUniform(exposure_, kExposure * kColorScale);
+    setUniform(exposure_, std::pow(kExposure * kColorScale, static_cast<float>(1 / kDisplayGamma)));
     setTint(glm::vec3(1.0f));
     for (const auto& effect : effects) effect->setUniforms(program_);
   }

@@ -11,9 +11,11 @@ constexpr double kHalfPi = 1.5707963267948966;
 
 /// Nearest integer, halves up. floor(x + 0.5) is wrong for 0.5 - 2^-54 and others, since the sum rounds; the difference
 /// below decides rightly for every x, by the monotony of rounding.
-double roundHalfUp(double x) noexcept {
-  const double lower = std::floor(x);
-  return x - lower >= 0.5 ? lower + 1.0 : lower;
+/// Through an integer, because std::floor is a call on the oldest x86-64.
+std::int64_t roundHalfUp(double x) noexcept {
+  const auto towardsZero = static_cast<std::int64_t>(x);
+  const std::int64_t lower = towardsZero - (static_cast<double>(towardsZero) > x ? 1 : 0);
+  return lower + (x - static_cast<double>(lower) >= 0.5 ? 1 : 0);
 }
 
 }  // namespace
@@ -40,9 +42,8 @@ int maxLevel(double radiusMeters) noexcept {
 
 LatticePoint roundToLattice(const glm::dvec3& positionBody, int stepExponent) noexcept {
   const double stepsPerMeter = stepMeters(-stepExponent);
-  return LatticePoint(static_cast<std::int64_t>(roundHalfUp(positionBody.x * stepsPerMeter)),
-                      static_cast<std::int64_t>(roundHalfUp(positionBody.y * stepsPerMeter)),
-                      static_cast<std::int64_t>(roundHalfUp(positionBody.z * stepsPerMeter)));
+  return LatticePoint(roundHalfUp(positionBody.x * stepsPerMeter), roundHalfUp(positionBody.y * stepsPerMeter),
+                      roundHalfUp(positionBody.z * stepsPerMeter));
 }
 
 glm::dvec3 latticePosition(const LatticePoint& point, int stepExponent) noexcept {

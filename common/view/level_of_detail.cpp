@@ -1,31 +1,60 @@
 #include "common/view/level_of_detail.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
 namespace terrane {
+namespace {
 
-double distanceMeters(const OrientedBox& box, const glm::dvec3& pointBody) noexcept {
+/// From a box' nearest point to a point outside, along the box' axes; half the box' size along them.
+struct Nearest {
+  std::array<double, 3> excess{}, half{};
+
+  double distance() const noexcept {
+    return std::sqrt(excess[0] * excess[0] + excess[1] * excess[1] + excess[2] * excess[2]);
+  }
+  double foreshortening(double distanceMeters) const noexcept {
+    const double top = half[0] * half[1];
+    const double projected = half[1] * half[2] * excess[0] + half[2] * half[0] * excess[1] + top * excess[2];
+    if (!(distanceMeters > 0) || !(top > 0)) return 1.0;
+    return std::clamp(std::sqrt(projected / (top * distanceMeters)), kLeastForeshortening, 1.0);
+  }
+};
+
+Nearest nearestPoint(const OrientedBox& box, const glm::dvec3& pointBody) noexcept {
   const glm::dvec3 toPoint = pointBody - box.center;
-  double squared = 0;
+  Nearest nearest;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double halfLength = glm::length(box.halfAxes[i]);
+    nearest.half[i] = glm::length(box.halfAxes[i]);
     // A flat box's third direction is the normal of the other two.
     const glm::dvec3 along =
-        halfLength > 0 ? box.halfAxes[i] : glm::cross(box.halfAxes[(i + 1) % 3], box.halfAxes[(i + 2) % 3]);
+        nearest.half[i] > 0 ? box.halfAxes[i] : glm::cross(box.halfAxes[(i + 1) % 3], box.halfAxes[(i + 2) % 3]);
     const double alongLength = glm::length(along);
     if (!(alongLength > 0)) continue;
-    const double excess = std::abs(glm::dot(toPoint, along)) / alongLength - halfLength;
-    if (excess > 0) squared += excess * excess;
+    nearest.excess[i] = std::max(0.0, std::abs(glm::dot(toPoint, along)) / alongLength - nearest.half[i]);
   }
-  return std::sqrt(squared);
+  return nearest;
+}
+
+}  // namespace
+
+double distanceMeters(const OrientedBox& box, const glm::dvec3& pointBody) noexcept {
+  return nearestPoint(box, pointBody).distance();
+}
+
+double foreshortening(const OrientedBox& box, const glm::dvec3& pointBody) noexcept {
+  const Nearest nearest = nearestPoint(box, pointBody);
+  return nearest.foreshortening(nearest.distance());
 }
 
 double screenSpaceErrorPixels(double geometricErrorMeters, const OrientedBox& box, const Camera& camera) noexcept {
-  const double distance = distanceMeters(box, camera.positionBody);
+  const Nearest nearest = nearestPoint(box, camera.positionBody);
+  const double distance = nearest.distance();
   if (!(distance > 0)) return std::numeric_limits<double>::infinity();
-  return geometricErrorMeters * pixelsPerRadian(camera) / distance;
+  return geometricErrorMeters * pixelsPerRadian(camera) / distance * nearest.foreshortening(distance);
 }
 
 }  // namespace terrane

@@ -46,10 +46,16 @@ class SkirtBuilder {
     return {tile_.directions.x[anchor], tile_.directions.y[anchor], tile_.directions.z[anchor]};
   }
 
+  /// Edge by edge: a batch that runs around the tile would be as wide as the tile everywhere.
   void evaluate(std::size_t samplesPerEdge, int level) {
     const GridDirections& d = scratch_.directions;
-    tile_.field.evaluate({d.x.data(), d.y.data(), d.z.data(), kEdges, samplesPerEdge},
-                         tile_.levels[static_cast<std::size_t>(level)].minWavelengthMeters, scratch_.samples);
+    scratch_.heightMeters.clear();
+    for (std::size_t at = 0; at < kEdges * samplesPerEdge; at += samplesPerEdge) {
+      tile_.field.evaluate({d.x.data() + at, d.y.data() + at, d.z.data() + at, 1, samplesPerEdge},
+                           tile_.levels[static_cast<std::size_t>(level)].minWavelengthMeters, scratch_.samples);
+      scratch_.heightMeters.insert(scratch_.heightMeters.end(), scratch_.samples.heightMeters.begin(),
+                                   scratch_.samples.heightMeters.end());
+    }
   }
 
   void startDirections() {
@@ -71,7 +77,7 @@ class SkirtBuilder {
     const std::size_t perEdge = cells_ / 2 + 1;
     evaluate(perEdge, tile_.path.level() - 1);
     for (std::size_t edge = 0; edge < kEdges; ++edge) {
-      const double* coarse = scratch_.samples.heightMeters.data() + edge * perEdge;
+      const double* coarse = scratch_.heightMeters.data() + edge * perEdge;
       for (std::size_t k = 0; k <= cells_; k += 2) lower(edge, k, coarse[k / 2]);
       for (std::size_t k = 1; k < cells_; k += 2) {
         const glm::dvec3 a = anchorDirection(edge, k - 1) * (tile_.radiusMeters + coarse[k / 2]);
@@ -89,7 +95,7 @@ class SkirtBuilder {
     const std::size_t perEdge = 2 * cells_ + 1;
     evaluate(perEdge, tile_.path.level() + 1);
     for (std::size_t edge = 0; edge < kEdges; ++edge) {
-      const double* fine = scratch_.samples.heightMeters.data() + edge * perEdge;
+      const double* fine = scratch_.heightMeters.data() + edge * perEdge;
       for (std::size_t q = 0; q < perEdge; ++q) {
         lower(edge, q / 2, fine[q]);
         lower(edge, (q + 1) / 2, fine[q]);

@@ -242,9 +242,11 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   const LevelAccuracy& accuracy = levels[static_cast<std::size_t>(path.level())];
   gridDirections(path, wire.cellsPerEdge, memory.directions);
   const auto side = static_cast<std::size_t>(wire.cellsPerEdge) + 1;
-  const SampleBatch batch{memory.directions.x.data(), memory.directions.y.data(), memory.directions.z.data(), side,
-                          side};
+  const SampleBatch batch{
+      memory.directions.x.data(),        memory.directions.y.data(), memory.directions.z.data(), side, side,
+      0.5 * accuracy.minWavelengthMeters};
   field->evaluate(batch, accuracy.minWavelengthMeters, memory.samples);
+  memory.skirt.samples.scratch = memory.samples.scratch;  // what was gathered around the tile serves its borders too
   skirtHeights({*field, levels, *topology, radius, path, memory.directions, memory.samples.heightMeters}, memory.skirt,
                memory.skirtHeights);
   times.fieldMs += millisecondsSince(start);

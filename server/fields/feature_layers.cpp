@@ -138,6 +138,79 @@ Range cellRange(double along, double outward, double reach, std::uint32_t cells)
           static_cast<std::uint32_t>(std::clamp(last, 0.0, top))};
 }
 
+/// One cell along one axis of its face, and the squares of the tangents of its sides: the smallest and largest within.
+struct CellSpan {
+  double start, width;
+  double least, most;
+};
+CellSpan cellSpan(const FeatureLayer& layer, std::uint32_t index) noexcept {
+  const double width = 2.0 / static_cast<double>(layer.cellsPerFace);
+  const double a = width * static_cast<double>(index) - 1, b = a + width;
+  const double ta = tanQuarterPi(std::clamp(a, -1.0, 1.0)), tb = tanQuarterPi(std::clamp(b, -1.0, 1.0));
+  return {a, width, a * b <= 0 ? 0 : std::min(ta * ta, tb * tb), std::max(ta * ta, tb * tb)};
+}
+
+bool isOccupied(const FeatureLayer& layer, const Cell& cell, std::uint64_t hash) noexcept {
+  const double share =
+      layer.stage == FeatureStage::Rock ? std::min(1.0, layer.occupancy * patchiness(layer, cell)) : layer.occupancy;
+  return hashUnit(hash) < share;
+}
+
+/// Where a cell's feature is and how large: all of it but its shape.
+struct Site {
+  double direction[3];
+  double diameter = 0, wear = 0, reach = 0;
+  std::uint64_t hash = 0;
+};
+
+/// Young craters up to this wear have a bright halo.
+constexpr double kHaloWear = 0.12;
+
+/// False if the cell is too narrow for the feature.
+bool chooseSite(const FeatureLayer& layer, double bodyRadius, const Cell& cell, std::uint64_t hash, const CellSpan& s,
+                const CellSpan& t, Site& out) noexcept {
+  // Cumulative N(> D) ~ D^-2 between D0 and 2 D0: D = D0 / sqrt(1 - 3/4 u).
+  const double diameter = layer.smallestDiameter() / std::sqrt(1 - 0.75 * hashUnit(mixHash(hash ^ 7)));
+  const bool rock = layer.stage == FeatureStage::Rock;
+  const double bowl = 0.5 * diameter / (1 - (rock ? kRockLobes : kCraterLobes));
+  // Margin to the cell's sides, in face angle: a point at angle a from the side's great circle, measured along the
+  // face's own grid, is at least R sin(a) g away from it, g = sqrt((1 + X^2) / (1 + X^2 + Y^2)), here taken at the
+  // worst place of the cell.
+  const auto margin = [&](double least, double most) {
+    const double g = std::sqrt((1 + least) / (1 + least + most));
+    const double sine = bowl / (bodyRadius * g);
+    return sine * (1 + 0.2 * sine * sine) * (4 / 3.14159265358979323846);  // asin(x) <= x (1 + 0.2 x^2) for x <= 0.6
+  };
+  const double marginS = margin(s.least, t.most), marginT = margin(t.least, s.most);
+  const double roomS = s.width - 2 * marginS, roomT = t.width - 2 * marginT;
+  if (roomS < 0 || roomT < 0) return false;
+  const glm::dvec3 direction = cubeDirection(cell.face, s.start + marginS + roomS * hashUnit(mixHash(hash ^ 8)),
+                                             t.start + marginT + roomT * hashUnit(mixHash(hash ^ 9)));
+  out.direction[0] = direction.x;
+  out.direction[1] = direction.y;
+  out.direction[2] = direction.z;
+  out.diameter = diameter;
+  out.hash = hash;
+  out.wear = rock ? 0 : wearOf(layer, mixHash(hash ^ 10));
+  const bool halo = layer.stage == FeatureStage::YoungCrater && out.wear < kHaloWear;
+  out.reach = rock ? bowl : 0.5 * diameter * (halo ? kHaloRadii : kApronRadii / (1 - kCraterLobes));
+  out.reach *= 1 + 1e-5;
+  return true;
+}
+
+Feature featureAt(const FeatureLayer& layer, double bodyRadius, const Site& site) noexcept {
+  if (layer.stage == FeatureStage::Rock) return makeRock(site.direction, bodyRadius, site.diameter, site.hash);
+  Feature f = makeCrater(site.direction, bodyRadius, site.diameter, site.wear, site.hash);
+  if (layer.stage == FeatureStage::YoungCrater && site.wear < kHaloWear) {
+    const double youth = 1 - site.wear / kHaloWear;
+    f.brightness = static_cast<float>((layer.exponent >= 4 ? 0.09 : 0.03) * youth);
+    f.rays = static_cast<float>(0.6 * youth);
+    f.reach = kHaloRadii * f.radius * (1 + 1e-5);
+    f.inverseHaloSquared = static_cast<float>(1 / (kHaloRadii * kHaloRadii));
+  }
+  return f;
+}
+
 }  // namespace
 
 std::uint64_t mixHash(std::uint64_t h) noexcept {
@@ -193,51 +266,12 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
                    Feature& out) {
   const Cell cell{face, column, row};
   const std::uint64_t hash = cellHash(layer, cell);
-  const double share =
-      layer.stage == FeatureStage::Rock ? std::min(1.0, layer.occupancy * patchiness(layer, cell)) : layer.occupancy;
-  if (hashUnit(hash) >= share) return false;
-
-  // Cumulative N(> D) ~ D^-2 between D0 and 2 D0: D = D0 / sqrt(1 - 3/4 u).
-  const double diameter = layer.smallestDiameter() / std::sqrt(1 - 0.75 * hashUnit(mixHash(hash ^ 7)));
-  const bool rock = layer.stage == FeatureStage::Rock;
-  const double bowl = 0.5 * diameter / (1 - (rock ? kRockLobes : kCraterLobes));
-
-  // Margin to the cell's sides, in face angle: a point at angle a from the side's great circle, measured along the
-  // face's own grid, is at least R sin(a) g away from it, g = sqrt((1 + X^2) / (1 + X^2 + Y^2)), here taken at the
-  // worst place of the cell.
-  const double width = 2.0 / static_cast<double>(layer.cellsPerFace);
-  const double s0 = width * static_cast<double>(column) - 1, t0 = width * static_cast<double>(row) - 1;
-  const auto squares = [](double a, double b) {
-    const double ta = tanQuarterPi(std::clamp(a, -1.0, 1.0)), tb = tanQuarterPi(std::clamp(b, -1.0, 1.0));
-    const double least = a * b <= 0 ? 0 : std::min(ta * ta, tb * tb);
-    return std::array<double, 2>{least, std::max(ta * ta, tb * tb)};
-  };
-  const auto xs = squares(s0, s0 + width), ys = squares(t0, t0 + width);
-  const auto margin = [&](double least, double most) {
-    const double g = std::sqrt((1 + least) / (1 + least + most));
-    const double sine = bowl / (bodyRadius * g);
-    return sine * (1 + 0.2 * sine * sine) * (4 / 3.14159265358979323846);  // asin(x) <= x (1 + 0.2 x^2) for x <= 0.6
-  };
-  const double marginS = margin(xs[0], ys[1]), marginT = margin(ys[0], xs[1]);
-  const double roomS = width - 2 * marginS, roomT = width - 2 * marginT;
-  if (roomS < 0 || roomT < 0) return false;
-  const double s = s0 + marginS + roomS * hashUnit(mixHash(hash ^ 8));
-  const double t = t0 + marginT + roomT * hashUnit(mixHash(hash ^ 9));
-  const glm::dvec3 direction = cubeDirection(face, s, t);
-  const double d[3] = {direction.x, direction.y, direction.z};
-  if (rock) {
-    out = makeRock(d, bodyRadius, diameter, hash);
-    return true;
+  Site site;
+  if (!isOccupied(layer, cell, hash) ||
+      !chooseSite(layer, bodyRadius, cell, hash, cellSpan(layer, column), cellSpan(layer, row), site)) {
+    return false;
   }
-  const double wear = wearOf(layer, mixHash(hash ^ 10));
-  out = makeCrater(d, bodyRadius, diameter, wear, hash);
-  if (layer.stage == FeatureStage::YoungCrater && wear < 0.12) {
-    const double youth = 1 - wear / 0.12;
-    out.brightness = static_cast<float>((layer.exponent >= 4 ? 0.09 : 0.03) * youth);
-    out.rays = static_cast<float>(0.6 * youth);
-    out.reach = kHaloRadii * out.radius * (1 + 1e-5);
-    out.inverseHaloSquared = static_cast<float>(1 / (kHaloRadii * kHaloRadii));
-  }
+  out = featureAt(layer, bodyRadius, site);
   return true;
 }
 
@@ -246,6 +280,12 @@ void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const double c
   const bool rock = layer.stage == FeatureStage::Rock;
   const double halo = layer.stage == FeatureStage::YoungCrater ? kHaloRadii : kApronRadii / (1 - kCraterLobes);
   const double reach = ballRadius + 0.51 * layer.largestDiameter() * (rock ? 1 / (1 - kRockLobes) : halo);
+  const auto touches = [&](const double at[3], double scale, double featureReach) {
+    const double dx = at[0] * scale - center[0], dy = at[1] * scale - center[1], dz = at[2] * scale - center[2];
+    const double limit = ballRadius + featureReach;
+    return dx * dx + dy * dy + dz * dz <= limit * limit;
+  };
+  thread_local std::vector<CellSpan> columnSpans;
   for (int face = 0; face < 6; ++face) {
     const FaceAxes& axes = cubeFaceAxes(face);
     const auto along = [&](const glm::dvec3& a) { return a.x * center[0] + a.y * center[1] + a.z * center[2]; };
@@ -254,13 +294,22 @@ void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const double c
     const Range columns = cellRange(along(axes.u), outward, reach, layer.cellsPerFace);
     const Range rows = cellRange(along(axes.v), outward, reach, layer.cellsPerFace);
     if (columns.first > columns.last) continue;
+    columnSpans.clear();
     for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
+      const CellSpan rowSpan = cellSpan(layer, row);
       for (std::uint32_t column = columns.first; column <= columns.last; ++column) {
-        Feature f;
-        if (!featureOfCell(layer, bodyRadius, face, column, row, f)) continue;
-        const double dx = f.center[0] - center[0], dy = f.center[1] - center[1], dz = f.center[2] - center[2];
-        const double limit = ballRadius + f.reach;
-        if (dx * dx + dy * dy + dz * dz <= limit * limit) out.push_back(f);
+        if (row == rows.first) columnSpans.push_back(cellSpan(layer, column));
+        const Cell cell{face, column, row};
+        const std::uint64_t hash = cellHash(layer, cell);
+        Site site;
+        if (!isOccupied(layer, cell, hash) ||
+            !chooseSite(layer, bodyRadius, cell, hash, columnSpans[column - columns.first], rowSpan, site)) {
+          continue;
+        }
+        // The shape costs more than the place: most of what lies in the cells around a ball does not reach it.
+        if (!touches(site.direction, bodyRadius, site.reach * (1 + 1e-6) + 1e-9 * bodyRadius)) continue;
+        const Feature f = featureAt(layer, bodyRadius, site);
+        if (touches(f.center, 1.0, f.reach)) out.push_back(f);
       }
     }
   }
@@ -285,11 +334,11 @@ std::vector<FeatureLayer> makeLayers(const LayerSettings& settings) {
     layers.push_back(layer);
   };
   const double craters = settings.craterDensity, rocks = settings.rockDensity;
-  // From 262 km down to 2 km: highland craters, older than the lava; twice over where they stand rim on rim.
+  // From 524 km down to 2 km: highland craters, older than the lava; twice over, for they stand rim on rim.
   constexpr double kOld[] = {0.5, 0.8, 0.85, 0.85, 0.7, 0.65, 0.55, 0.5};
   for (int k = 18; k >= 11; --k) {
     add(FeatureStage::OldCrater, k, craters * kOld[18 - k], k >= 15 ? 0.05 : 0.1, k >= 15 ? 0.75 : 0.85, 1, 1);
-    if (k <= 17 && k >= 15) add(FeatureStage::OldCrater, k, craters * 0.7, 0.3, 0.9, 1, 5);
+    if (k <= 17) add(FeatureStage::OldCrater, k, craters * 0.75, 0.3, k >= 15 ? 0.9 : 0.95, 1, 5);
   }
   // Younger than the lava: few large ones, saturated from some hundred metres down.
   for (int k = 14; k >= -4; --k) {

@@ -30,6 +30,9 @@ struct SampleBatch {
   const double* y = nullptr;
   const double* z = nullptr;
   std::size_t rows = 0, rowLength = 0;
+  /// Gradients and reflectance are averaged over about this far around each sample, so that a mesh with such cells does
+  /// not show them aliased (heights are those of the point itself); 0: at the point.
+  double footprintMeters = 0;
   std::size_t count() const noexcept { return rows * rowLength; }
 };
 

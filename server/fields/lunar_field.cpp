@@ -17,16 +17,11 @@ using namespace lunar;
 /// One a calling thread; grows to its steady state with the first tiles.
 struct SurfaceSamples::Scratch {
   Block block;
-  std::vector<Feature> features;
-  std::vector<FeatureRun> runs;
-  std::vector<std::size_t> runStarts;
+  FeatureGathering gathering;
   std::vector<NoiseGroup> groups;
 };
 
 namespace {
-
-/// Craters from 1 km up are computed in double at fine levels.
-constexpr int kDoubleExponent = 10;
 
 double parameter(const Body& body, std::string_view name) {
   if (const auto found = body.fieldParameters.find(name); found != body.fieldParameters.end()) return found->second;
@@ -77,9 +72,6 @@ BlockGrid blockGrid(const SampleBatch& batch) noexcept {
   return {rows, columns, blockRows, pieces(batch.rowLength, columns)};
 }
 
-struct Ball {
-  double center[3], radius;
-};
 Ball boundingBall(const double* x, const double* y, const double* z, std::size_t count) noexcept {
   double low[3] = {x[0], y[0], z[0]}, high[3] = {x[0], y[0], z[0]};
   for (std::size_t i = 1; i < count; ++i) {
@@ -112,8 +104,7 @@ LunarField::LunarField(const Body& body, SimdPath simd)
       finestDetail_(parameter(body, "finest-detail")),
       evaluateBlock_(kernelFor(simd)) {
   makeNoise();
-  makeLandmarks();
-  layers_ = makeLayers({radius_, craterDensity_, rockDensity_, finestDetail_, seed_});
+  makeFeatures();
   const double scale = std::min(1.0, radius_ / kTableRadiusMeters);
   base_.radius = radius_;
   base_.lavaTop = (-2050 + 4500 * mareFraction_) * scale;
@@ -130,7 +121,7 @@ LunarField::LunarField(const Body& body, SimdPath simd)
   base_.patchCount = patches_.size();
   base_.rays = rays_.data();
   base_.rayCount = rays_.size();
-  bounds_ = LunarBounds(base_, groups_, layers_, landmarkCraters_);
+  bounds_ = LunarBounds(base_, groups_, features_->layers, features_->landmarks);
 }
 
 void LunarField::makeNoise() {
@@ -176,7 +167,15 @@ void LunarField::makeNoise() {
   }
 }
 
-void LunarField::makeLandmarks() {
+void LunarField::makeFeatures() {
+  const auto features = std::make_shared<FeatureTables>();
+  features->bodyRadius = radius_;
+  features->layers = makeLayers({radius_, craterDensity_, rockDensity_, finestDetail_, seed_});
+  makeLandmarks(*features);
+  features_ = features;
+}
+
+void LunarField::makeLandmarks(FeatureTables& features) {
   const double scale = radius_ / kTableRadiusMeters, heightScale = std::min(1.0, scale);
   for (const BasinRow& row : basinTable()) {
     Basin b{};
@@ -230,7 +229,7 @@ void LunarField::makeLandmarks() {
       }
       rays_.push_back(r);
     }
-    landmarkCraters_.push_back(f);
+    features.landmarks.push_back(f);
   }
 }
 
@@ -244,6 +243,7 @@ class LunarField::Evaluation {
         out_(out),
         scratch_(*out.scratch),
         program_(field.base_) {
+    program_.footprint = batch.footprintMeters;
     scratch_.groups.clear();
     for (NoiseGroup group : field.groups_) {
       while (group.count > 0 && group.octaves[group.count - 1].inverseWavelength * minWavelengthMeters > 1)
@@ -257,7 +257,7 @@ class LunarField::Evaluation {
     }
     program_.reliefInDouble = minWavelengthMeters < kCoarseWavelength;
     double finest = radius();
-    for (const FeatureLayer& layer : field.layers_) {
+    for (const FeatureLayer& layer : field.features_->layers) {
       if (layer.wavelengthMeters() >= minWavelengthMeters) finest = layer.wavelengthMeters();
     }
     widestBall_ = kWidestBall * finest;
@@ -268,18 +268,14 @@ class LunarField::Evaluation {
   void run() {
     const Ball whole = scaled(boundingBall(batch_.x, batch_.y, batch_.z, batch_.count()));
     const bool compact = whole.radius <= widestBall_;
-    if (compact) gather(whole);
+    if (compact) gather({batch_.x, batch_.y, batch_.z, batch_.count(), radius(), whole});
     const BlockGrid grid = blockGrid(batch_);
     for (std::size_t blockRow = 0; blockRow < grid.rows; ++blockRow) {
       for (std::size_t blockColumn = 0; blockColumn < grid.columns; ++blockColumn) {
-        std::size_t used = 0;
         const std::size_t rowEnd = std::min(batch_.rows, (blockRow + 1) * grid.blockRows);
         const std::size_t columnEnd = std::min(batch_.rowLength, (blockColumn + 1) * grid.blockColumns);
-        for (std::size_t row = blockRow * grid.blockRows; row < rowEnd; ++row) {
-          for (std::size_t column = blockColumn * grid.blockColumns; column < columnEnd; ++column) {
-            indices_[used++] = row * batch_.rowLength + column;
-          }
-        }
+        const std::size_t used =
+            listSamples(blockRow * grid.blockRows, rowEnd, blockColumn * grid.blockColumns, columnEnd);
         if (used > 0) evaluateBlock({indices_.data(), used}, compact);
       }
     }
@@ -296,37 +292,25 @@ class LunarField::Evaluation {
     return ball;
   }
 
-  void finishRun(std::size_t start, FeatureStage stage, bool inDouble) {
-    if (scratch_.features.size() == start) return;
-    scratch_.runStarts.push_back(start);
-    scratch_.runs.push_back({nullptr, scratch_.features.size() - start, stage, inDouble});
+  /// A block's samples in strips of about four rows, column by column: then 16 in a row, a chunk, lie in a square, and
+  /// a small crater touches few of them.
+  std::size_t listSamples(std::size_t rowBegin, std::size_t rowEnd, std::size_t columnBegin, std::size_t columnEnd) {
+    std::size_t used = 0;
+    const std::size_t rows = rowEnd - rowBegin, strips = std::max<std::size_t>(1, rows / 4);
+    for (std::size_t strip = 0; strip < strips; ++strip) {
+      for (std::size_t column = columnBegin; column < columnEnd; ++column) {
+        for (std::size_t row = rowBegin + rows * strip / strips; row < rowBegin + rows * (strip + 1) / strips; ++row)
+          indices_[used++] = row * batch_.rowLength + column;
+      }
+    }
+    return used;
   }
 
-  /// Coarse to fine, within a layer by face, row and column: the order of the sums.
-  void gather(const Ball& ball) {
-    std::vector<Feature>& features = scratch_.features;
-    features.clear();
-    scratch_.runs.clear();
-    scratch_.runStarts.clear();
-    for (const FeatureLayer& layer : field_.layers_) {
-      if (layer.wavelengthMeters() < minWavelength_) break;
-      const std::size_t start = features.size();
-      gatherFeatures(layer, radius(), ball.center, ball.radius, features);
-      finishRun(start, layer.stage, layer.exponent >= kDoubleExponent && program_.reliefInDouble);
-    }
-    const std::size_t start = features.size();
-    for (const Feature& f : field_.landmarkCraters_) {
-      if (f.radius < minWavelength_) break;
-      const double dx = f.center[0] - ball.center[0], dy = f.center[1] - ball.center[1],
-                   dz = f.center[2] - ball.center[2];
-      const double limit = f.reach + ball.radius;
-      if (dx * dx + dy * dy + dz * dz <= limit * limit) features.push_back(f);
-    }
-    finishRun(start, FeatureStage::YoungCrater, program_.reliefInDouble);
-    for (std::size_t i = 0; i < scratch_.runs.size(); ++i)
-      scratch_.runs[i].features = features.data() + scratch_.runStarts[i];
-    program_.runs = scratch_.runs.data();
-    program_.runCount = scratch_.runs.size();
+  void gather(const PointSet& points) {
+    const std::span<const FeatureRun> runs =
+        scratch_.gathering.runs(field_.features_, points, minWavelength_, program_.reliefInDouble);
+    program_.runs = runs.data();
+    program_.runCount = runs.size();
   }
 
   void evaluateBlock(std::span<const std::size_t> indices, bool gathered) {
@@ -344,7 +328,7 @@ class LunarField::Evaluation {
         for (std::size_t i = 0; i < indices.size(); ++i) evaluateBlock(indices.subspan(i, 1), false);
         return;
       }
-      gather(whole);
+      gather({block.x, block.y, block.z, block.count, 1.0, whole});
     }
     std::copy(whole.center, whole.center + 3, block.center);
     block.radius = whole.radius;

@@ -12,10 +12,11 @@
 // double (at levels with cells under 2 m): no rounding step above some hundredths of a millimetre there. Every SIMD
 // path, batch and thread gives the same bits.
 
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "server/fields/feature_layers.h"
+#include "server/fields/feature_gathering.h"
 #include "server/fields/height_field.h"
 #include "server/fields/lunar_bounds.h"
 #include "server/fields/lunar_program.h"
@@ -34,7 +35,8 @@ class LunarField final : public HeightField {
  private:
   class Evaluation;
   void makeNoise();
-  void makeLandmarks();
+  void makeFeatures();
+  void makeLandmarks(lunar::FeatureTables& features);
 
   double radius_;
   std::uint64_t seed_;
@@ -46,8 +48,7 @@ class LunarField final : public HeightField {
   std::vector<lunar::Basin> basins_;
   std::vector<lunar::LavaPatch> patches_;
   std::vector<lunar::RaySystem> rays_;
-  std::vector<lunar::Feature> landmarkCraters_;  ///< by falling diameter
-  std::vector<lunar::FeatureLayer> layers_;
+  std::shared_ptr<const lunar::FeatureTables> features_;
   lunar::LunarBounds bounds_;
   lunar::Program base_{};  ///< without noise counts and runs
 };

@@ -19,6 +19,13 @@ TERRANE_INLINE Blend roundedMax(double a, double b, double blend) {
   return {larger + blend * (1.0 / 6.0) * (t * t * t), difference < 0 ? half : 1.0 - half};
 }
 
+/// What is left of a wave's slope when it is averaged over +-footprint: sin(pi u) / (pi u) with u = 2 footprint /
+/// wavelength, by the first factors of its product.
+TERRANE_INLINE double keptSlope(double footprint, double inverseWavelength) {
+  const double u = 2.0 * footprint * inverseWavelength, square = u * u;
+  return square < 1.0 ? (1.0 - square) * (1.0 - 0.25 * square) : 0.0;
+}
+
 // ------------------------------------------------------------------------------------------------------------ relief
 // and lava
 
@@ -42,7 +49,7 @@ TERRANE_INLINE void rotateBack(const float* m, float x, float y, float z, float&
 /// Relief and lava are two sums over the same octaves. The last octave is left in `last` as the modulator of the first
 /// regolith group.
 template <class Real>
-void addRelief(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) {
+void addRelief(const NoiseGroup& group, double footprint, Block& b, OctaveSamples<float>& last) {
   const RotatedBlock rotated = rotateBlock(b, group.rotation);
   float m[9];
   for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(group.rotation[i]);
@@ -51,8 +58,8 @@ void addRelief(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) {
     const NoiseOctave& octave = group.octaves[k];
     evaluateOctave<Real>(rotated, octave, n);
     const double a = octave.amplitude, l = octave.lavaAmplitude;
-    const float da = static_cast<float>(a * octave.inverseWavelength),
-                dl = static_cast<float>(l * octave.inverseWavelength);
+    const double kept = keptSlope(footprint, octave.inverseWavelength) * octave.inverseWavelength;
+    const float da = static_cast<float>(a * kept), dl = static_cast<float>(l * kept);
     const float toUnit = static_cast<float>(octave.inverseWavelength);
     const float weight = k < 2 ? 0.0f : 0.45f;  // mottling from some 250 km down
     for (std::size_t i = 0; i < b.count; ++i) {
@@ -120,7 +127,7 @@ void addPatch(const LavaPatch& patch, Block& b) {
 // regolith noise
 
 /// scale = 1 + modulation * last; the group's own last octave replaces it.
-void addRegolith(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) {
+void addRegolith(const NoiseGroup& group, double footprint, Block& b, OctaveSamples<float>& last) {
   const RotatedBlock rotated = rotateBlock(b, group.rotation);
   float m[9];
   for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(group.rotation[i]);
@@ -129,8 +136,9 @@ void addRegolith(const NoiseGroup& group, Block& b, OctaveSamples<float>& last) 
   for (std::size_t k = 0; k < group.count; ++k) {
     const NoiseOctave& octave = group.octaves[k];
     evaluateOctave<float>(rotated, octave, n);
-    const float a = static_cast<float>(octave.amplitude),
-                da = static_cast<float>(octave.amplitude * octave.inverseWavelength);
+    const float a = static_cast<float>(octave.amplitude);
+    const float da = static_cast<float>(octave.amplitude * octave.inverseWavelength *
+                                        keptSlope(footprint, octave.inverseWavelength));
     for (std::size_t i = 0; i < b.count; ++i) {
       sum.value[i] += a * n.value[i];
       sum.x[i] += da * n.x[i];
@@ -178,7 +186,31 @@ struct Profile {
 template <class Real>
 struct Shape {
   Real apex, rise, floor, floorBlend, inverseFloorBlend, rim, rimBlend, inverseRimBlend, peak;
+  /// For slopes: the inverse half-widths of the edges, rounded at least to the footprint; and what it leaves of a
+  /// slope.
+  Real inverseSoftFloor, inverseSoftRim, keptSlope;
 };
+
+template <class Real>
+Shape<Real> shapeOf(const Feature& f, double footprint) {
+  const double reach = footprint / f.radius;
+  const double floorRise = f.floor - f.apex;  // the bowl meets the floor where rise s = floorRise
+  const double floorSlope = 2.0 * __builtin_sqrt((floorRise > 0 ? floorRise : 0.0) * f.rise);
+  const double rimSlope = 2.0 * f.rise + f.rim * (3.0 / (kApronRadii - 1.0));
+  const double softFloor = floorSlope * reach, softRim = rimSlope * reach;
+  return {Real(f.apex),
+          Real(f.rise),
+          Real(f.floor),
+          Real(f.floorBlend),
+          Real(1.0 / f.floorBlend),
+          Real(f.rim),
+          Real(f.rimBlend),
+          Real(1.0 / f.rimBlend),
+          Real(f.peak),
+          Real(1.0 / (softFloor > f.floorBlend ? softFloor : f.floorBlend)),
+          Real(1.0 / (softRim > f.rimBlend ? softRim : f.rimBlend)),
+          Real(keptSlope(footprint, 0.5 / f.radius))};
+}
 
 /// Bowl, flattened below by a floor, cut above by the apron of ejecta: roundedMin(roundedMax(bowl, floor), apron) +
 /// peak. Beyond kApronRadii the apron is 0 and the bowl far above it: exactly 0.
@@ -191,7 +223,9 @@ TERRANE_INLINE Profile<Real> craterProfile(const Shape<Real>& p, Real s) {
   Real t = one - aboveSize * p.inverseFloorBlend;
   t = t > zero ? t : zero;
   Real inner = (above < zero ? p.floor : bowl) + p.floorBlend * sixth * (t * t * t);
-  const Real bowlWeight = above < zero ? half * (t * t) : one - half * (t * t);
+  Real tSoft = one - aboveSize * p.inverseSoftFloor;
+  tSoft = tSoft > zero ? tSoft : zero;
+  const Real bowlWeight = above < zero ? half * (tSoft * tSoft) : one - half * (tSoft * tSoft);
   Real innerSlope = bowlWeight * p.rise;
 
   const Real peakRest = one - s * Real(1.0 / kPeakRadiusSquared);
@@ -209,9 +243,11 @@ TERRANE_INLINE Profile<Real> craterProfile(const Shape<Real>& p, Real s) {
   const Real size = difference < zero ? -difference : difference;
   Real r = one - size * p.inverseRimBlend;
   r = r > zero ? r : zero;
-  const Real innerWeight = difference < zero ? one - half * (r * r) : half * (r * r);
+  Real rSoft = one - size * p.inverseSoftRim;
+  rSoft = rSoft > zero ? rSoft : zero;
+  const Real innerWeight = difference < zero ? one - half * (rSoft * rSoft) : half * (rSoft * rSoft);
   return {(difference < zero ? inner : apron) - p.rimBlend * sixth * (r * r * r),
-          innerWeight * innerSlope + (one - innerWeight) * apronSlope};
+          (innerWeight * innerSlope + (one - innerWeight) * apronSlope) * p.keptSlope};
 }
 
 /// A boulder: height (1 - s^2)^2, steep sides, rounded top.
@@ -219,7 +255,7 @@ template <class Real>
 TERRANE_INLINE Profile<Real> rockProfile(const Shape<Real>& p, Real s) {
   const Real rest = Real(1) - s * s;
   const Real q = rest > Real(0) ? rest : Real(0);
-  return {p.peak * (q * q), p.peak * (Real(-4) * s) * q};
+  return {p.peak * (q * q), p.peak * (Real(-4) * s) * q * p.keptSlope};
 }
 
 /// The stage is a compile-time choice so that the compiler sees which arrays of the block are written, and vectorises.
@@ -273,13 +309,11 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
 }
 
 template <class Real, FeatureStage Stage>
-void addFeatures(const FeatureRun& run, Block& b) {
+void addFeatures(const FeatureRun& run, double footprint, Block& b) {
   for (std::size_t k = 0; k < run.count; ++k) {
     const Feature& f = run.features[k];
     if (!reaches(b, f.center, f.reach)) continue;
-    const Shape<Real> shape{
-        Real(f.apex), Real(f.rise),     Real(f.floor),          Real(f.floorBlend), Real(1.0 / f.floorBlend),
-        Real(f.rim),  Real(f.rimBlend), Real(1.0 / f.rimBlend), Real(f.peak)};
+    const Shape<Real> shape = shapeOf<Real>(f, footprint);
     for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
       const double* q = b.chunkCenter[chunk];
       const double dx = q[0] - f.center[0], dy = q[1] - f.center[1], dz = q[2] - f.center[2];
@@ -290,16 +324,16 @@ void addFeatures(const FeatureRun& run, Block& b) {
   }
 }
 
-void addRun(const FeatureRun& run, Block& b) {
+void addRun(const FeatureRun& run, double footprint, Block& b) {
   switch (run.stage) {
     case FeatureStage::OldCrater:
-      return run.inDouble ? addFeatures<double, FeatureStage::OldCrater>(run, b)
-                          : addFeatures<float, FeatureStage::OldCrater>(run, b);
+      return run.inDouble ? addFeatures<double, FeatureStage::OldCrater>(run, footprint, b)
+                          : addFeatures<float, FeatureStage::OldCrater>(run, footprint, b);
     case FeatureStage::YoungCrater:
-      return run.inDouble ? addFeatures<double, FeatureStage::YoungCrater>(run, b)
-                          : addFeatures<float, FeatureStage::YoungCrater>(run, b);
+      return run.inDouble ? addFeatures<double, FeatureStage::YoungCrater>(run, footprint, b)
+                          : addFeatures<float, FeatureStage::YoungCrater>(run, footprint, b);
     case FeatureStage::Rock:
-      return addFeatures<float, FeatureStage::Rock>(run, b);
+      return addFeatures<float, FeatureStage::Rock>(run, footprint, b);
   }
 }
 
@@ -336,6 +370,17 @@ void addRays(const RaySystem& system, Block& b) {
 // ----------------------------------------------------------------------------------------------------------------
 // composition
 
+/// How much of what is around a sample is land: roundedMax's weight, over a blend at least as wide as the footprint, so
+/// that coasts are not cut in steps of cells.
+TERRANE_INLINE float landShare(float height, float slopeX, float slopeY, float slopeZ, float blend, float footprint) {
+  const float slope = __builtin_sqrtf((slopeX * slopeX + slopeY * slopeY) + slopeZ * slopeZ);
+  const float wide = 1.5f * footprint * slope;
+  const float inside = 1.0f - (height < 0 ? -height : height) / (wide > blend ? wide : blend);
+  const float t = inside > 0 ? inside : 0.0f;
+  const float half = 0.5f * (t * t);
+  return height < 0 ? half : 1.0f - half;
+}
+
 /// Floods the relief, adds what is young, clamps (C2, so that no sum of overlapping features leaves the stated range),
 /// roughens.
 void composeHeight(const Program& p, Block& b) {
@@ -343,21 +388,26 @@ void composeHeight(const Program& p, Block& b) {
   const float lavaRise = static_cast<float>(p.lavaTop - p.lavaFloor);
   const float lavaTint = static_cast<float>(3.0 * p.inverseReliefAmplitude);
   const double inverseRadius = 1.0 / p.radius;
+  const float lavaBlend = static_cast<float>(p.lavaBlend), footprint = static_cast<float>(p.footprint);
   for (std::size_t i = 0; i < b.count; ++i) {
     const double lava = p.lavaTop - (p.lavaTop - p.lavaFloor) * b.dry[i] + b.lava[i];
     const Blend surface = roundedMax(b.relief[i], lava, p.lavaBlend);
     const Blend bottom = roundedMax(surface.value + b.young[i], p.clampLow, p.clampBlend);
     const Blend top = roundedMax(-bottom.value, -p.clampHigh, p.clampBlend);
     const float keep = static_cast<float>(bottom.weight * top.weight);
-    const float land = static_cast<float>(surface.weight), mare = keep * (1.0f - land), landKeep = land * keep;
+    const float lavaX = b.lavaX[i] - lavaRise * b.dryX[i], lavaY = b.lavaY[i] - lavaRise * b.dryY[i],
+                lavaZ = b.lavaZ[i] - lavaRise * b.dryZ[i];
+    const float land = landShare(static_cast<float>(b.relief[i] - lava), b.reliefX[i] - lavaX, b.reliefY[i] - lavaY,
+                                 b.reliefZ[i] - lavaZ, lavaBlend, footprint);
+    const float mare = keep * (1.0f - land), landKeep = land * keep;
 
     const float dry = static_cast<float>(b.dry[i]);
     const float calm = 1.0f - smoothing * (1.0f - dry), roughCalm = smoothing * b.rough[i];
     b.height[i] = static_cast<double>(calm * b.rough[i]) - top.value;
 
-    float gx = landKeep * b.reliefX[i] + mare * (b.lavaX[i] - lavaRise * b.dryX[i]) + keep * b.youngX[i];
-    float gy = landKeep * b.reliefY[i] + mare * (b.lavaY[i] - lavaRise * b.dryY[i]) + keep * b.youngY[i];
-    float gz = landKeep * b.reliefZ[i] + mare * (b.lavaZ[i] - lavaRise * b.dryZ[i]) + keep * b.youngZ[i];
+    float gx = landKeep * b.reliefX[i] + mare * lavaX + keep * b.youngX[i];
+    float gy = landKeep * b.reliefY[i] + mare * lavaY + keep * b.youngY[i];
+    float gz = landKeep * b.reliefZ[i] + mare * lavaZ + keep * b.youngZ[i];
     gx += calm * b.roughX[i] + roughCalm * b.dryX[i];
     gy += calm * b.roughY[i] + roughCalm * b.dryY[i];
     gz += calm * b.roughZ[i] + roughCalm * b.dryZ[i];
@@ -391,9 +441,9 @@ void kEvaluate(const Program& program, Block& block) noexcept {
   for (std::size_t i = 0; i < block.count; ++i)
     modulator.value[i] = modulator.x[i] = modulator.y[i] = modulator.z[i] = 0.0f;
   if (program.reliefInDouble) {
-    addRelief<double>(program.relief, block, modulator);
+    addRelief<double>(program.relief, program.footprint, block, modulator);
   } else {
-    addRelief<float>(program.relief, block, modulator);
+    addRelief<float>(program.relief, program.footprint, block, modulator);
   }
   for (std::size_t k = 0; k < program.basinCount; ++k) {
     if (reaches(block, program.basins[k].center, program.basins[k].reach)) addBasin(program.basins[k], block);
@@ -401,8 +451,9 @@ void kEvaluate(const Program& program, Block& block) noexcept {
   for (std::size_t k = 0; k < program.patchCount; ++k) {
     if (reaches(block, program.patches[k].center, program.patches[k].reach)) addPatch(program.patches[k], block);
   }
-  for (std::size_t k = 0; k < program.regolithCount; ++k) addRegolith(program.regolith[k], block, modulator);
-  for (std::size_t k = 0; k < program.runCount; ++k) addRun(program.runs[k], block);
+  for (std::size_t k = 0; k < program.regolithCount; ++k)
+    addRegolith(program.regolith[k], program.footprint, block, modulator);
+  for (std::size_t k = 0; k < program.runCount; ++k) addRun(program.runs[k], program.footprint, block);
   for (std::size_t k = 0; k < program.rayCount; ++k) {
     if (reaches(block, program.rays[k].center, program.rays[k].reach)) addRays(program.rays[k], block);
   }

@@ -96,6 +96,7 @@ struct FeatureRun {
 
 struct Program {
   double radius;
+  double footprint;   ///< metres: gradients and reflectance are averaged over this far; 0 for none
   NoiseGroup relief;  ///< two sums: relief and lava
   bool reliefInDouble;
   const NoiseGroup* regolith;  ///< float32

@@ -1,5 +1,6 @@
 // What a tile costs to build, by level, beside what stock Draco alone takes for the same mesh in the same run.
-// Usage: bench_tile_build [--tiles N] [--scene NAME]; prints a Markdown table of medians, one core.
+// Usage: bench_tile_build [--tiles N] [--scene NAME] [--default-heap]; prints a Markdown table of medians, one core.
+// The heap is set as the server sets it, for both; --default-heap leaves it alone.
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/build/heap_policy.h"
 #include "server/build/tile_builder.h"
 #include "server/scenes/scene_file.h"
 #include "tests/bench/stock_draco.h"
@@ -57,10 +59,14 @@ bool measure(const TileBuilder& builder, const FacePath& path, const DracoSettin
 int main(int argc, char** argv) {
   int tiles = 25;
   std::string sceneName = "moon";
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::string_view(argv[i]) == "--tiles") tiles = std::max(1, std::atoi(argv[i + 1]));
-    if (std::string_view(argv[i]) == "--scene") sceneName = argv[i + 1];
+  bool defaultHeap = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view flag = argv[i];
+    if (flag == "--default-heap") defaultHeap = true;
+    if (flag == "--tiles" && i + 1 < argc) tiles = std::max(1, std::atoi(argv[i + 1]));
+    if (flag == "--scene" && i + 1 < argc) sceneName = argv[i + 1];
   }
+  if (!defaultHeap) keepFreedMemory();
   const auto scene = loadScene(sceneName);
   if (!scene) {
     fmt::print(stderr, "bench_tile_build: {}\n", scene.error().text());

@@ -46,6 +46,49 @@ TERRANE_FMA_TARGET __attribute__((noinline, optimize("O2", "fp-contract=fast")))
 }
 #endif
 
+struct Pairs {
+  float high[3], low[3];
+};
+
+// Straight-line code, three splits side by side: what GCC 12.2's basic-block vectoriser gets wrong.
+__attribute__((noinline)) Pairs split(double x, double y, double z) {
+  Pairs pairs{};
+  pairs.high[0] = static_cast<float>(x);
+  pairs.high[1] = static_cast<float>(y);
+  pairs.high[2] = static_cast<float>(z);
+  pairs.low[0] = static_cast<float>(x - static_cast<double>(pairs.high[0]));
+  pairs.low[1] = static_cast<float>(y - static_cast<double>(pairs.high[1]));
+  pairs.low[2] = static_cast<float>(z - static_cast<double>(pairs.high[2]));
+  return pairs;
+}
+
+#if !defined(__clang__)
+// The control: the same code with that vectoriser on.
+__attribute__((noinline, optimize("O3", "tree-slp-vectorize"))) Pairs splitVectorised(double x, double y, double z) {
+  Pairs pairs{};
+  pairs.high[0] = static_cast<float>(x);
+  pairs.high[1] = static_cast<float>(y);
+  pairs.high[2] = static_cast<float>(z);
+  pairs.low[0] = static_cast<float>(x - static_cast<double>(pairs.high[0]));
+  pairs.low[1] = static_cast<float>(y - static_cast<double>(pairs.high[1]));
+  pairs.low[2] = static_cast<float>(z - static_cast<double>(pairs.high[2]));
+  return pairs;
+}
+#endif
+
+TEST(StrictMath, LowWordsSurvive) {
+  const volatile double x = 1.0 + 0x1p-30, y = 3.0 + 0x1p-29, z = 5.0 + 0x1p-28;
+  const Pairs pairs = split(x, y, z);
+  EXPECT_EQ(pairs.low[0], 0x1p-30f);
+  EXPECT_EQ(pairs.low[1], 0x1p-29f);
+  EXPECT_EQ(pairs.low[2], 0x1p-28f);
+#if !defined(__clang__)
+  const Pairs control = splitVectorised(x, y, z);
+  std::cout << "control, basic-block vectoriser on: low words " << control.low[0] << ' ' << control.low[1] << ' '
+            << control.low[2] << '\n';
+#endif
+}
+
 TEST(StrictMath, ProductsAreNotContractedIntoSums) {
   if (!cpuHasFma()) GTEST_SKIP() << "this CPU cannot contract";
   // (1 + 2^-27)^2 = 1 + 2^-26 + 2^-54: the last term is lost when the product is rounded, and kept when it is fused.

@@ -1,0 +1,53 @@
+#pragma once
+// The craters and rocks near a ball, gathered once for all batches that lie within it: a tile's grid, then its borders
+// at the levels beside it. Body frame, metres. Belongs to one thread.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "server/fields/feature_layers.h"
+#include "server/fields/lunar_program.h"
+
+namespace terrane::lunar {
+
+struct Ball {
+  double center[3] = {0, 0, 0};
+  double radius = 0;
+};
+
+/// Points at scale * (x, y, z), and a ball around them.
+struct PointSet {
+  const double *x, *y, *z;
+  std::size_t count;
+  double scale;
+  Ball ball;
+};
+
+/// All features of a body. Immutable once made.
+struct FeatureTables {
+  double bodyRadius = 0;
+  std::vector<FeatureLayer> layers;  ///< coarse to fine
+  std::vector<Feature> landmarks;    ///< by falling size
+};
+
+class FeatureGathering {
+ public:
+  /// Features that may reach any of the points and have wavelengths of at least minWavelength, coarse to fine, within a
+  /// layer by face, row and column, landmarks last: the order of the sums. Valid until the next call.
+  /// inDouble: large features are computed in double.
+  std::span<const FeatureRun> runs(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
+                                   double minWavelength, bool inDouble);
+
+ private:
+  bool covers(const FeatureTables& tables, const PointSet& points) const noexcept;
+  void start(const std::shared_ptr<const FeatureTables>& tables, const Ball& ball);
+
+  std::shared_ptr<const FeatureTables> tables_;  ///< held, so that it is never mistaken for another's
+  Ball ball_;
+  std::vector<Feature> features_, landmarks_;
+  std::vector<std::size_t> layerEnds_;  ///< of the layers gathered so far
+  std::vector<FeatureRun> runs_;
+};
+
+}  // namespace terrane::lunar
