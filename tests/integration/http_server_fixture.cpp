@@ -26,7 +26,7 @@ std::string tileAt(std::string_view rest) {
 void HttpServerTest::SetUp() { options.listen = {"127.0.0.1:0"}; }
 
 void HttpServerTest::TearDown() {
-  release();
+  gate.release();
   stop();
 }
 
@@ -52,22 +52,6 @@ void HttpServerTest::stop() {
   thread_.join();
 }
 
-void HttpServerTest::hold() {
-  const std::lock_guard lock(mutex_);
-  held_ = true;
-}
-
-void HttpServerTest::release() {
-  const std::lock_guard lock(mutex_);
-  held_ = false;
-  changed_.notify_all();
-}
-
-void HttpServerTest::waitForBuilds(int count) {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return buildsBegun_ >= count; });
-}
-
 void HttpServerTest::expectStillServing() {
   const auto answer = httpGet(url, "/healthz");
   ASSERT_TRUE(answer);
@@ -75,10 +59,7 @@ void HttpServerTest::expectStillServing() {
 }
 
 Result<std::vector<std::uint8_t>> HttpServerTest::build(const TileKey& key) {
-  std::unique_lock lock(mutex_);
-  ++buildsBegun_;
-  changed_.notify_all();
-  changed_.wait(lock, [this] { return !held_; });
+  gate.pass();
   const std::string text = key.path.text();
   std::vector<std::uint8_t> bytes(std::max(tileBytes, text.size()));
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(text[i % text.size()]);

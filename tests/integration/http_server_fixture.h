@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +14,7 @@
 
 #include "server/http/http_server.h"
 #include "tests/integration/http_client.h"
+#include "tests/support/build_gate.h"
 
 namespace terrane::test {
 
@@ -35,9 +34,6 @@ class HttpServerTest : public testing::Test {
   void start();
   void stop();
 
-  void hold();
-  void release();
-  void waitForBuilds(int count);
   /// Waits for something that will come to pass, at most half a minute.
   template <class Condition>
   static bool eventually(Condition condition) {
@@ -51,6 +47,7 @@ class HttpServerTest : public testing::Test {
 
   ServerOptions options;
   std::size_t tileBytes = 0;
+  testing_support::BuildGate gate;
   std::optional<TileService> service;
   std::unique_ptr<HttpServer> server;
   std::string url;
@@ -59,10 +56,6 @@ class HttpServerTest : public testing::Test {
   Result<std::vector<std::uint8_t>> build(const TileKey& key);
 
   std::thread thread_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool held_ = false;
-  int buildsBegun_ = 0;
 };
 
 }  // namespace terrane::test

@@ -60,10 +60,10 @@ TEST_F(HttpServerTest, ASilentConnectionAndAnIdleOneAreClosed) {
 
 TEST_F(HttpServerTest, AClientThatGoesAwayWithdrawsItsBuild) {
   start();
-  hold();
+  gate.hold();
   HttpConnection first(url), closing(url), resetting(url), staying(url);
   first.send("GET " + tileAt("cube/0") + " HTTP/1.1\r\nHost: x\r\n\r\n");
-  waitForBuilds(1);
+  gate.waitForBuilds(1);
   closing.send("GET " + tileAt("cube/1") + " HTTP/1.1\r\nHost: x\r\n\r\n");
   resetting.send("GET " + tileAt("cube/2") + " HTTP/1.1\r\nHost: x\r\n\r\n");
   staying.send("GET " + tileAt("cube/3") + " HTTP/1.1\r\nHost: x\r\n\r\n");
@@ -71,7 +71,7 @@ TEST_F(HttpServerTest, AClientThatGoesAwayWithdrawsItsBuild) {
   closing.close();
   resetting.abort();
   ASSERT_TRUE(eventually([&] { return service->cacheStats().dropped == 2; }));
-  release();
+  gate.release();
   EXPECT_EQ(first.read()->body, "cube/0");
   EXPECT_EQ(staying.read()->body, "cube/3");
   EXPECT_EQ(service->cacheStats().builds, 2u);
@@ -80,13 +80,13 @@ TEST_F(HttpServerTest, AClientThatGoesAwayWithdrawsItsBuild) {
 TEST_F(HttpServerTest, ATileThatTakesTooLongIs503AndTheConnectionIsKept) {
   options.responseTimeout = 100ms;
   start();
-  hold();
+  gate.hold();
   HttpConnection connection(url);
   const auto late = connection.request(tileAt("cube/0"));
   ASSERT_TRUE(late);
   EXPECT_EQ(late->status, 503);
   EXPECT_EQ(late->fields.at("retry-after"), "1");
-  release();
+  gate.release();
   EXPECT_EQ(connection.request("/healthz")->status, 200);
 }
 

@@ -15,15 +15,15 @@ using namespace test;
 
 TEST_F(HttpServerTest, StopLetsWhatIsUnderWayFinishAndClosesTheIdle) {
   start();
-  hold();
+  gate.hold();
   HttpConnection idle(url), busy(url);
   EXPECT_EQ(idle.request("/healthz")->status, 200);
   busy.send("GET " + tileAt("cube/0") + " HTTP/1.1\r\nHost: x\r\n\r\n");
-  waitForBuilds(1);
+  gate.waitForBuilds(1);
   server->stop();
   EXPECT_TRUE(idle.closedByServer());
   EXPECT_FALSE(HttpConnection(url).open()) << "nothing new is accepted";
-  release();
+  gate.release();
   const auto answer = busy.read();
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->body, "cube/0");
@@ -35,11 +35,11 @@ TEST_F(HttpServerTest, StopLetsWhatIsUnderWayFinishAndClosesTheIdle) {
 TEST_F(HttpServerTest, StopDoesNotWaitLongerThanItsGrace) {
   options.shutdownGrace = 100ms;
   start();
-  hold();
+  gate.hold();
   HttpConnection busy(url), half(url);
   busy.send("GET " + tileAt("cube/0") + " HTTP/1.1\r\nHost: x\r\n\r\n");
   half.send("GET / HT");
-  waitForBuilds(1);
+  gate.waitForBuilds(1);
   stop();  // returns although the build is still held
   EXPECT_EQ(server->connections(), 0u);
   EXPECT_FALSE(busy.read());

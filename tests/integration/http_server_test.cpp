@@ -137,12 +137,12 @@ TEST_F(HttpServerTest, APortInUseAndABadAddressNameTheFlag) {
 
 TEST_F(HttpServerTest, ABuildUnderWayDoesNotKeepOthersWaiting) {
   start();
-  hold();
+  gate.hold();
   HttpConnection waiting(url);
   waiting.send("GET " + tileAt("cube/0/1") + " HTTP/1.1\r\nHost: x\r\n\r\n");
-  waitForBuilds(1);
+  gate.waitForBuilds(1);
   for (int i = 0; i < 20; ++i) expectStillServing();
-  release();
+  gate.release();
   EXPECT_EQ(waiting.read()->body, "cube/0/1");
 }
 
