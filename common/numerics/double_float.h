@@ -12,7 +12,7 @@
 //   [LLMPR23] Lefevre, Louvet, Muller, Picot, Rideau, "Accurate calculation of Euclidean norms using double-word
 //   arithmetic", ACM
 //            TOMS 49(1), 2023
-// tests/numeric/double_float_test.cpp measures all of them. The "sloppy" sum of [JMP17] has no bound for opposite signs
+// tests/numeric measures all of them. The "sloppy" sum of [JMP17] has no bound for opposite signs
 // and is not here.
 //
 // The bounds hold while operands and results have magnitudes in 2^-40 .. 2^100 (10^-12 .. 10^30). Far below, an error

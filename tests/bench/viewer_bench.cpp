@@ -1,5 +1,5 @@
-// A viewer's frame (select, place, draw) beside a bare loop that draws the same triangles, in turn, in one run, at
-// three views of the Moon. Usage: bench_viewer [--frames N]; prints a Markdown table of medians.
+// A viewer's frame (select, place, draw) beside a bare loop that draws the same triangles into the same target, in
+// turn, in one run, at three views of the Moon. Usage: bench_viewer [--frames N]; prints a Markdown table of medians.
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "client/gl/render_target.h"
 #include "client/gl/window.h"
 #include "client/render/tile_renderer.h"
 #include "common/tiling/cube_sphere.h"
@@ -62,7 +63,7 @@ TileSelection settle(const TileBuilder& builder, const Camera& camera, Tiles& ti
     for (const WantedTile& wanted : selection.wanted) {
       if (resident.contains(wanted.path)) continue;
       auto tile = decodeTile(builder.build(wanted.path).value().glb);
-      resident[wanted.path] = {tile.value().metadata.subtreeHeights};
+      resident[wanted.path] = {tile.value().metadata.subtreeHeights, tile.value().metadata.heights};
       tiles[wanted.path] = std::make_shared<const Tile>(std::move(tile.value()));
       added = true;
     }
@@ -122,10 +123,13 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto renderer = TileRenderer::create(scene->effects);
-  if (!renderer) {
-    fmt::print(stderr, "bench_viewer: {}\n", renderer.error().text());
+  const auto target = RenderTarget::create(kWidth, kHeight);
+  if (!renderer || !target) {
+    fmt::print(stderr, "bench_viewer: {}\n", !renderer ? renderer.error().text() : target.error().text());
     return 2;
   }
+  // Both loops draw here: the window's own depth buffer is too coarse for either, and the renderer would copy to it.
+  target->bind();
   const TileBuilder builder(scene->bodies.front(), {}, bestSimdPath());
   const double longitude = -20 * kDegrees, latitude = 10 * kDegrees;
   const Camera above = cameraFromPose({longitude, latitude, 1, 0, 0}, builder.body().radiusMeters, 1, kWidth, kHeight);

@@ -67,17 +67,17 @@ TEST(BadNetwork, AServerThatDiesInFlightLeavesTheViewerDrawingToTheEnd) {
   ASSERT_FALSE(server.url.empty()) << server.process->errors();
   const TemporaryFolder folder;
   // The first pose is full before the flight begins; then every frame asks for more, from a server that is gone.
-  std::ofstream(folder.file("f.txt"))
+  std::ofstream(folder / "f.txt")
       << "# terrane flight 1\n0 -10 8 3000000 0 -90\n1 -10 8 2999999 0 -90\n9 40 8 30000 0 -60\n";
   ChildProcess viewer({programFile("terrane-view"), "--server", server.url, "--headless", "--size", "160x90",
-                       "--flight", folder.file("f.txt"), "--step", "0.05", "--stats", folder.file("s.json")});
+                       "--flight", folder / "f.txt", "--step", "0.05", "--stats", folder / "s.json"});
   ASSERT_FALSE(viewer.waitForLine("3000 km above sphere", 120s).empty()) << viewer.errors();
   server.process->kill();
   const auto status = viewer.wait(240s);
   ASSERT_TRUE(status.has_value());
   EXPECT_EQ(*status, 0) << viewer.errors();
   EXPECT_NE(viewer.output().find("does not answer"), std::string::npos) << viewer.output();
-  const std::string json = readFile(folder.file("s.json"));
+  const std::string json = readFile(folder / "s.json");
   EXPECT_EQ(jsonNumber(json, "framesDrawn"), 181);
   EXPECT_EQ(jsonNumber(json, "uncoveredPixels"), 0);  // what it has covers the body, if coarsely
 }

@@ -19,15 +19,6 @@ constexpr double kErrorPixels = 2;
 
 class CoverageTest : public GlTest {
  protected:
-  static TileSource& moon() {
-    static TileSource source("moon");
-    return source;
-  }
-  static std::unique_ptr<TileRenderer> makeRenderer(const RendererOptions& options = {}) {
-    auto renderer = TileRenderer::create({}, options);
-    if (!renderer) throw std::runtime_error(renderer.error().text());
-    return std::move(*renderer);
-  }
   static CoverageCount count(TileRenderer& renderer, const Camera& camera, const std::vector<FacePath>& paths,
                              Placement placement) {
     for (const FacePath& path : paths) renderer.upload(moon().tile(path));
@@ -86,7 +77,7 @@ TEST_F(CoverageTest, LeavingOutATileIsSeen) {
 TEST_F(CoverageTest, TheBaselinePathCountsTheSame) {
   const Camera camera = moon().cameraAboveGround({-1.0, 0.7, 50.0, 2.0, -10 * kDegree}, kWidth, kHeight);
   const std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);
-  auto baseline = makeRenderer({.forceBaseline = true});
+  auto baseline = makeRenderer({}, {.forceBaseline = true});
   EXPECT_EQ(count(*baseline, camera, paths, Placement::Integer).uncovered, 0u);
 }
 

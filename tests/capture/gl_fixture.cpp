@@ -36,6 +36,16 @@ void GlTest::TearDown() { EXPECT_EQ(gl::takeErrors(), ""); }
 
 Window& GlTest::window() { return *sharedWindow(); }
 
+TileSource& GlTest::moon() {
+  static TileSource source("moon");
+  return source;
+}
+
+std::unique_ptr<TileRenderer> GlTest::makeRenderer(const std::vector<EffectCall>& effects,
+                                                   const RendererOptions& options) {
+  return require(TileRenderer::create(effects, options));
+}
+
 TestScene shippedScene(const std::string& name) {
   Scene scene = require(loadScene(name));
   return {scene.bodies.front(), scene.effects};

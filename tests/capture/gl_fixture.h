@@ -17,15 +17,6 @@
 
 namespace terrane {
 
-/// Opens the window before the first test and checks after each that GL raised no error.
-class GlTest : public testing::Test {
- protected:
-  static void SetUpTestSuite();
-  void SetUp() override;
-  void TearDown() override;
-  static Window& window();
-};
-
 /// The tiles of one body, built on demand and kept.
 class TileSource {
  public:
@@ -46,6 +37,18 @@ class TileSource {
   std::unique_ptr<const HeightField> field_;
   std::unordered_map<FacePath, ResidentTile> resident_;
   std::unordered_map<FacePath, std::shared_ptr<const Tile>> tiles_;
+};
+
+/// Opens the window before the first test and checks after each that GL raised no error.
+class GlTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite();
+  void SetUp() override;
+  void TearDown() override;
+  static Window& window();
+  static TileSource& moon();
+  static std::unique_ptr<TileRenderer> makeRenderer(const std::vector<EffectCall>& effects = {},
+                                                    const RendererOptions& options = {});
 };
 
 struct TestScene {

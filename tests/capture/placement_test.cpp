@@ -26,14 +26,8 @@ constexpr double kErrorPixels = 1;
 
 class PlacementTest : public GlTest {
  protected:
-  static TileSource& moon() {
-    static TileSource source("moon");
-    return source;
-  }
-  static std::unique_ptr<TileRenderer> makeRenderer(const RendererOptions& options = {}) {
-    auto renderer = TileRenderer::create(shippedScene("moon").effects, options);
-    if (!renderer) throw std::runtime_error(renderer.error().text());
-    return std::move(*renderer);
+  static std::unique_ptr<TileRenderer> makeMoonRenderer(const RendererOptions& options = {}) {
+    return makeRenderer(shippedScene("moon").effects, options);
   }
   static std::vector<FacePath> uploadSettled(TileRenderer& renderer, const Camera& camera) {
     std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);
@@ -117,7 +111,7 @@ void measure(TileRenderer& renderer, const Camera& camera, const Tile& tile, std
 TEST_F(PlacementTest, VerticesStayWithinAHundredthOfAPixelWhileTheCameraMovesByMillimetres) {
   constexpr int kMoves = 12, kFullMoves = 1;
   Camera camera = moon().cameraAboveGround({-20.1 * kDegree, 9.6 * kDegree, 2.0, 0.4, -12 * kDegree}, kWidth, kHeight);
-  auto renderer = makeRenderer();
+  auto renderer = makeMoonRenderer();
   const std::vector<FacePath> paths = uploadSettled(*renderer, camera);
   PixelErrors integer, doubleFloat, cpu, float32;
   for (int move = 0; move < kMoves; ++move) {
@@ -146,7 +140,7 @@ TEST_F(PlacementTest, AMillimetreOfCameraMovesEveryNearVertexByAMillimetre) {
   const Camera before = moon().cameraAboveGround({1.0, 0.5, 2.0, 0, -90 * kDegree}, kWidth, kHeight);
   Camera after = before;
   after.positionBody += 0.001 * before.right;
-  auto renderer = makeRenderer();
+  auto renderer = makeMoonRenderer();
   const std::vector<FacePath> paths = uploadSettled(*renderer, before);
   const double pixelsPerMeter = pixelsPerRadian(before);  // at a distance of 1 m
   double worst = 0;
@@ -196,7 +190,7 @@ std::size_t countDifferingSharedVertices(TileRenderer& renderer, const Camera& c
 }
 
 TEST_F(PlacementTest, VerticesSharedByTilesGetTheSameBitsOverFaceEdgesAndCornersToo) {
-  auto renderer = makeRenderer();
+  auto renderer = makeMoonRenderer();
   const double corner = std::atan(1 / std::sqrt(2.0));
   std::size_t float32Differing = 0;
   for (const int level : {3, 12, 20}) {
@@ -229,7 +223,7 @@ TEST_F(PlacementTest, VerticesSharedByTilesGetTheSameBitsOverFaceEdgesAndCorners
 }
 
 TEST_F(PlacementTest, IntegerDoubleFloatAndCpuDrawTheSamePictureFromOrbitToTheGround) {
-  auto renderer = makeRenderer();
+  auto renderer = makeMoonRenderer();
   for (const double altitude : {1e7, 1e5, 2.0, 0.2}) {
     const Camera camera =
         moon().cameraAboveGround({-20.1 * kDegree, 9.6 * kDegree, altitude, 0.2, -35 * kDegree}, kWidth, kHeight);
@@ -252,7 +246,7 @@ TEST_F(PlacementTest, IntegerDoubleFloatAndCpuDrawTheSamePictureFromOrbitToTheGr
 }
 
 TEST_F(PlacementTest, TheBaselineDepthPathDrawsThePictureOfTheReversedOne) {
-  auto reversed = makeRenderer(), baseline = makeRenderer({.forceBaseline = true});
+  auto reversed = makeMoonRenderer(), baseline = makeMoonRenderer({.forceBaseline = true});
   for (const double altitude : {1e7, 3e4, 0.2}) {
     const double pitch = altitude > 1e6 ? -90 * kDegree : -10 * kDegree;
     const Camera camera = moon().cameraAboveGround({0.3, -0.4, altitude, 1.0, pitch}, kWidth, kHeight);
@@ -266,7 +260,7 @@ TEST_F(PlacementTest, TheBaselineDepthPathDrawsThePictureOfTheReversedOne) {
 }
 
 TEST_F(PlacementTest, ATileTooFarForTheShadersIntegersIsPlacedOnTheCpu) {
-  auto renderer = makeRenderer();
+  auto renderer = makeMoonRenderer();
   const FacePath path = FacePath::cubeTile(0, 22, 1u << 21, 1u << 21);
   const auto tile = moon().tile(path);
   renderer->upload(tile);
@@ -278,7 +272,7 @@ TEST_F(PlacementTest, ATileTooFarForTheShadersIntegersIsPlacedOnTheCpu) {
 }
 
 TEST_F(PlacementTest, DrawingToTheWindowShowsWhatTheRenderTargetHolds) {
-  auto renderer = makeRenderer();
+  auto renderer = makeMoonRenderer();
   const auto size = window().framebufferSize();
   const Camera camera = cameraFromPose({0.3, 0.2, 4e6, 0, -90 * kDegree}, 1737400, 0.9, size[0], size[1]);
   const std::vector<FacePath> paths = uploadSettled(*renderer, camera);
@@ -289,7 +283,7 @@ TEST_F(PlacementTest, DrawingToTheWindowShowsWhatTheRenderTargetHolds) {
 }
 
 TEST_F(PlacementTest, TilesOfEqualConnectivityShareTheirIndicesAndGiveTheirMemoryBack) {
-  auto renderer = makeRenderer();
+  auto renderer = makeMoonRenderer();
   EXPECT_EQ(renderer->gpuBytes(), 0u);
   const auto a = moon().tile(FacePath::cubeTile(1, 2, 0, 0)), b = moon().tile(FacePath::cubeTile(1, 2, 1, 0));
   const std::size_t first = renderer->upload(a), second = renderer->upload(b);

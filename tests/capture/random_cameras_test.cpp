@@ -41,14 +41,13 @@ TEST(RandomCameras, ShowNoHoleAtAnyHeightAndPitch) {
   const RunningServer server("moon");
   ASSERT_FALSE(server.url.empty()) << server.process->errors();
   const TemporaryFolder folder;
-  std::ofstream(folder.file("cameras.txt")) << randomFlight(seed, count);
-  const auto outcome =
-      runView({"--server", server.url, "--headless", "--size", "640x360", "--flight", folder.file("cameras.txt"),
-               "--step", "1", "--settle", "--stats", folder.file("stats.json")},
-              std::chrono::seconds(60 + 20 * static_cast<long>(count)));
+  std::ofstream(folder / "cameras.txt") << randomFlight(seed, count);
+  const auto outcome = runView({"--server", server.url, "--headless", "--size", "640x360", "--flight",
+                                folder / "cameras.txt", "--step", "1", "--settle", "--stats", folder / "stats.json"},
+                               std::chrono::seconds(60 + 20 * static_cast<long>(count)));
   fmt::print("{}", outcome.output);
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  const std::string json = readFile(folder.file("stats.json"));
+  const std::string json = readFile(folder / "stats.json");
   EXPECT_EQ(jsonNumber(json, "framesDrawn"), static_cast<double>(count));
   EXPECT_EQ(jsonNumber(json, "framesCounted"), static_cast<double>(count));
   EXPECT_EQ(jsonNumber(json, "uncoveredPixels"), 0);

@@ -27,15 +27,15 @@ class Viewer : public testing::Test {
 };
 
 TEST_F(Viewer, SettlesAtACameraCapturesItAndWritesEveryFigure) {
-  const auto outcome = view(
-      {"--camera", "-10,8,3000000", "--settle", "--capture", folder_.file("a.png"), "--stats", folder_.file("a.json")});
+  const auto outcome =
+      view({"--camera", "-10,8,3000000", "--settle", "--capture", folder_ / "a.png", "--stats", folder_ / "a.json"});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_EQ(outcome.errors, "");
-  const auto image = readPng(folder_.file("a.png"));
+  const auto image = readPng(folder_ / "a.png");
   ASSERT_TRUE(image);
   EXPECT_EQ(image->width, 320);
   EXPECT_EQ(image->height, 180);
-  const std::string json = readFile(folder_.file("a.json"));
+  const std::string json = readFile(folder_ / "a.json");
   for (const char* key : {"framesDrawn", "frameMs",       "p50",         "p99",           "max",      "msToSettle",
                           "tilesDrawn",  "tilesResident", "requests",    "bytesReceived", "decodeMs", "uncoveredPixels",
                           "skirtPixels", "rssBytes",      "gpuBytes",    "placement",     "selfTest", "errorPixels",
@@ -50,9 +50,9 @@ TEST_F(Viewer, SettlesAtACameraCapturesItAndWritesEveryFigure) {
 }
 
 TEST_F(Viewer, ThePictureOfTheWholeBodyHasABrightDiscAndBlackCorners) {
-  const auto outcome = view({"--capture", folder_.file("whole.png")});
+  const auto outcome = view({"--capture", folder_ / "whole.png"});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  const auto image = readPng(folder_.file("whole.png"));
+  const auto image = readPng(folder_ / "whole.png");
   ASSERT_TRUE(image);
   const auto brightness = [&](int x, int y) {
     const std::size_t at = 3 * (static_cast<std::size_t>(y) * 320 + static_cast<std::size_t>(x));
@@ -66,37 +66,36 @@ TEST_F(Viewer, ThePictureOfTheWholeBodyHasABrightDiscAndBlackCorners) {
 TEST_F(Viewer, TheSameCameraGivesTheSamePictureTwice) {
   const std::vector<std::string> camera{"--camera", "-10,8,400,30,-30", "--above-ground", "--settle", "--capture"};
   auto first = camera, second = camera;
-  first.push_back(folder_.file("1.png"));
-  second.push_back(folder_.file("2.png"));
+  first.push_back(folder_ / "1.png");
+  second.push_back(folder_ / "2.png");
   ASSERT_EQ(view(first).status, 0);
   ASSERT_EQ(view(second).status, 0);
-  const auto a = readPng(folder_.file("1.png")), b = readPng(folder_.file("2.png"));
+  const auto a = readPng(folder_ / "1.png"), b = readPng(folder_ / "2.png");
   ASSERT_TRUE(a && b);
   EXPECT_EQ(a->rgb, b->rgb);
 }
 
 TEST_F(Viewer, AboveGroundStandsThatHighOverTheFinestGround) {
   const auto outcome =
-      view({"--camera", "-10,8,2,0,0", "--above-ground", "--error", "8", "--stats", folder_.file("s.json")});
+      view({"--camera", "-10,8,2,0,0", "--above-ground", "--error", "8", "--stats", folder_ / "s.json"});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_NEAR(jsonNumber(readFile(folder_.file("s.json")), "heightAboveGroundMeters"), 2, 1e-6);
+  EXPECT_NEAR(jsonNumber(readFile(folder_ / "s.json"), "heightAboveGroundMeters"), 2, 1e-6);
 }
 
 TEST_F(Viewer, AFlightIsCapturedAndMeasuredAtEachOfItsPoints) {
-  std::ofstream(folder_.file("f.txt"))
+  std::ofstream(folder_ / "f.txt")
       << "# terrane flight 1\nabove-ground\n0 -10 8 2000000 0 -90\n1 -10 8 20000 0 -60\n2 -10 8 50 0 -20\n";
-  const auto outcome =
-      view({"--flight", folder_.file("f.txt"), "--step", "0.5", "--settle", "--error", "4", "--capture",
-            folder_.file("p-%d.png"), "--stats", folder_.file("f.json"), "--record", folder_.file("r.txt")});
+  const auto outcome = view({"--flight", folder_ / "f.txt", "--step", "0.5", "--settle", "--error", "4", "--capture",
+                             folder_ / "p-%d.png", "--stats", folder_ / "f.json", "--record", folder_ / "r.txt"});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_EQ(lineCount(outcome.output), 3u) << outcome.output;
-  for (const char* name : {"p-1.png", "p-2.png", "p-3.png"}) EXPECT_TRUE(readPng(folder_.file(name))) << name;
-  const std::string json = readFile(folder_.file("f.json"));
+  for (const char* name : {"p-1.png", "p-2.png", "p-3.png"}) EXPECT_TRUE(readPng(folder_ / name)) << name;
+  const std::string json = readFile(folder_ / "f.json");
   EXPECT_EQ(jsonNumber(json, "framesDrawn"), 5);  // three points and one between each two
   EXPECT_EQ(jsonNumber(json, "uncoveredPixels"), 0);
   EXPECT_NE(json.find("\"name\": \"2000 km\""), std::string::npos);
   EXPECT_NE(json.find("\"name\": \"50 m\""), std::string::npos);
-  const auto recorded = loadFlight(folder_.file("r.txt"));
+  const auto recorded = loadFlight(folder_ / "r.txt");
   ASSERT_TRUE(recorded) << recorded.error().text();
   EXPECT_EQ(recorded->points.size(), 5u);
 }
@@ -121,9 +120,9 @@ TEST(ViewerOfABareSphere, ConstructsNoEffect) {
 TEST_F(Viewer, AFrameBudgetRaisesTheErrorThatAFrameIsDrawnWith) {
   // No machine draws a frame in a hundredth of a millisecond: the controller has to go to its limit.
   const auto outcome = view({"--camera", "-10,8,3000000", "--frame-budget", "0.01", "--settle", "--frames", "60",
-                             "--error", "2", "--stats", folder_.file("b.json")});
+                             "--error", "2", "--stats", folder_ / "b.json"});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_EQ(jsonNumber(readFile(folder_.file("b.json")), "errorPixels"), 32);
+  EXPECT_EQ(jsonNumber(readFile(folder_ / "b.json"), "errorPixels"), 32);
 }
 
 TEST_F(Viewer, AnUnknownBodyIsNamedWithThoseThatThereAre) {

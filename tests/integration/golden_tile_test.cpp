@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "server/build/tile_builder.h"
-#include "tests/integration/moon_body.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {

@@ -13,7 +13,7 @@
 #include "common/tiling/lattice.h"
 #include "proto/gltf_tile.h"
 #include "server/build/tile_builder.h"
-#include "tests/integration/moon_body.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {

@@ -22,7 +22,7 @@
 #include "common/view/horizon.h"
 #include "common/view/tile_selection.h"
 #include "server/build/tile_builder.h"
-#include "tests/integration/moon_body.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {

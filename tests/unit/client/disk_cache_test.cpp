@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-#include "tests/unit/client/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace terrane {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::TemporaryFolder;
+using testing_support::TemporaryFolder;
 using Bytes = std::vector<std::uint8_t>;
 
 Bytes bytesOf(std::size_t size, int seed) {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "tests/unit/client/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace terrane {
 namespace {
@@ -150,7 +150,7 @@ TEST(FlightFile, AnyBytesAreAFlightOrAnErrorWithALine) {
 }
 
 TEST(FlightFile, LoadsAFileAndNamesOneThatIsMissing) {
-  const testing::TemporaryFolder folder;
+  const testing_support::TemporaryFolder folder;
   std::ofstream(folder / "a.flight") << "0 0 0 5 0 0\nwrong\n";
   const auto flight = loadFlight(folder / "a.flight");
   ASSERT_FALSE(flight);

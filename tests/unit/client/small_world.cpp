@@ -39,6 +39,8 @@ std::vector<WantedTile> together(std::initializer_list<std::vector<WantedTile>> 
   return all;
 }
 
+std::string target(const FacePath& tile, const std::string& revision) { return tileTarget({revision, "moon", tile}); }
+
 void SmallWorld::start() {
   server_.reset();
   server_ = std::make_unique<FakeServer>([this](const std::string& target) { return answer(target); }, port_);
@@ -88,6 +90,19 @@ FakeReply SmallWorld::answer(const std::string& target) {
     reply.status = 404;
   }
   return rule_ ? rule_(target, reply) : reply;
+}
+
+SmallWorld::Rule holding(const std::string& ending) {
+  return [ending](const std::string& asked, const FakeReply& usual) {
+    FakeReply reply = usual;
+    reply.hold = asked.ends_with(ending);
+    return reply;
+  };
+}
+
+RunningWorld::RunningWorld(Rule rule) {
+  setRule(std::move(rule));
+  start();
 }
 
 StreamOptions quickOptions(const std::string& url) {

@@ -21,6 +21,8 @@ FacePath path(std::string_view text);
 std::vector<WantedTile> chain(const FacePath& leaf, double errorPixels = 4);
 /// Without doubles, coarsest first.
 std::vector<WantedTile> together(std::initializer_list<std::vector<WantedTile>> sets);
+/// What is asked for when a tile of the first body is wanted.
+std::string target(const FacePath& tile, const std::string& revision = kRevision);
 
 class SmallWorld {
  public:
@@ -51,6 +53,15 @@ class SmallWorld {
   std::map<std::string, int> asked_;
   int port_ = 0;
   std::unique_ptr<FakeServer> server_;
+};
+
+/// Every answer to a target that ends so waits until it is released.
+SmallWorld::Rule holding(const std::string& ending);
+
+/// One that is up from the start.
+class RunningWorld : public SmallWorld {
+ public:
+  explicit RunningWorld(Rule rule = nullptr);
 };
 
 /// Short pauses, no grace, so that tests need not wait.

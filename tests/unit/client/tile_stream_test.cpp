@@ -18,10 +18,6 @@ using namespace terrane::testing;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-std::string target(const FacePath& tile, const std::string& revision = kRevision) {
-  return tileTarget({revision, "moon", tile});
-}
-
 TEST(TileStream, WrongServerNamesTheFlag) {
   const auto stream = TileStream::open(quickOptions("moon.example"), nullptr);
   ASSERT_FALSE(stream);
@@ -29,8 +25,7 @@ TEST(TileStream, WrongServerNamesTheFlag) {
 }
 
 TEST(TileStream, BringsTheWholeChainWithOneRequestATile) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));
   EXPECT_FALSE(viewer.stream().idle()) << "there is no scene yet";
   ASSERT_TRUE(viewer.waitForScene());
@@ -53,13 +48,7 @@ TEST(TileStream, BringsTheWholeChainWithOneRequestATile) {
 }
 
 TEST(TileStream, AncestorsAndLeavesAreAskedForAtOnceCoarsestFirstThenLargestError) {
-  SmallWorld world;
-  world.setRule([](const std::string& asked, const FakeReply& usual) {
-    FakeReply reply = usual;
-    reply.hold = asked.ends_with("/cube/0.glb");
-    return reply;
-  });
-  world.start();
+  RunningWorld world(holding("/cube/0.glb"));
   StreamOptions options = quickOptions(world.url());
   options.connections = 1;
   SmallViewer viewer(options);
@@ -80,8 +69,7 @@ TEST(TileStream, AncestorsAndLeavesAreAskedForAtOnceCoarsestFirstThenLargestErro
 }
 
 TEST(TileStream, HandsOverWithinTheBudgetCoarsestFirst) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   const auto wanted = chain(path("cube/5/3210"));
@@ -99,8 +87,7 @@ TEST(TileStream, HandsOverWithinTheBudgetCoarsestFirst) {
 }
 
 TEST(TileStream, AViewerThatOnlyStepsWhenWokenSeesEverything) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));
   while (!viewer.stream().scene()) ASSERT_TRUE(viewer.waitForWake());
   viewer.stream().selectBody(0);
@@ -114,13 +101,7 @@ TEST(TileStream, AViewerThatOnlyStepsWhenWokenSeesEverything) {
 }
 
 TEST(TileStream, CancelsWhatIsNoLongerWantedAfterTheGrace) {
-  SmallWorld world;
-  world.setRule([](const std::string& asked, const FakeReply& usual) {
-    FakeReply reply = usual;
-    reply.hold = asked.ends_with(".glb");
-    return reply;
-  });
-  world.start();
+  RunningWorld world(holding(".glb"));
   StreamOptions options = quickOptions(world.url());
   options.connections = 1;
   options.graceTime = 1h;
@@ -138,13 +119,7 @@ TEST(TileStream, CancelsWhatIsNoLongerWantedAfterTheGrace) {
 }
 
 TEST(TileStream, WantedAgainWithinTheGraceIsNotAskedForTwice) {
-  SmallWorld world;
-  world.setRule([](const std::string& asked, const FakeReply& usual) {
-    FakeReply reply = usual;
-    reply.hold = asked.ends_with(".glb");
-    return reply;
-  });
-  world.start();
+  RunningWorld world(holding(".glb"));
   StreamOptions options = quickOptions(world.url());
   options.graceTime = 1h;
   SmallViewer viewer(options);
@@ -162,13 +137,7 @@ TEST(TileStream, WantedAgainWithinTheGraceIsNotAskedForTwice) {
 }
 
 TEST(TileStream, WantedTilesOvertakeThoseInTheirGrace) {
-  SmallWorld world;
-  world.setRule([](const std::string& asked, const FakeReply& usual) {
-    FakeReply reply = usual;
-    reply.hold = asked.ends_with("/cube/0.glb");
-    return reply;
-  });
-  world.start();
+  RunningWorld world(holding("/cube/0.glb"));
   StreamOptions options = quickOptions(world.url());
   options.connections = 1;
   options.graceTime = 1h;
@@ -186,8 +155,7 @@ TEST(TileStream, WantedTilesOvertakeThoseInTheirGrace) {
 }
 
 TEST(TileStream, SteppingBackAndForthOverAThresholdFetchesAndEvictsNothingTwice) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   const auto coarse = chain(path("cube/0/01"));
   const auto fine = together(
       {chain(path("cube/0/010")), chain(path("cube/0/011")), chain(path("cube/0/012")), chain(path("cube/0/013"))});
@@ -205,8 +173,7 @@ TEST(TileStream, SteppingBackAndForthOverAThresholdFetchesAndEvictsNothingTwice)
 }
 
 TEST(TileStream, SteppingWhileLoadingAndOverBudgetFetchesNothingTwiceWithinTheGrace) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   const auto a = together({chain(path("cube/0/0100")), chain(path("cube/0/0113"))});
   const auto b = together({chain(path("cube/0/3100")), chain(path("cube/0/3113"))});
   const auto both = together({a, b});
@@ -222,8 +189,7 @@ TEST(TileStream, SteppingWhileLoadingAndOverBudgetFetchesNothingTwiceWithinTheGr
 }
 
 TEST(TileStream, TheBudgetHoldsAndTheLeastRecentlyWantedGoesFirst) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   StreamOptions options = quickOptions(world.url());
   constexpr std::size_t kTiles = 12;
   options.residentBudgetBytes = kTiles * (SmallViewer::kGpuBytes + 500);
@@ -252,8 +218,7 @@ TEST(TileStream, TheBudgetHoldsAndTheLeastRecentlyWantedGoesFirst) {
 }
 
 TEST(TileStream, NeverEvictsWhatIsDrawnHoweverSmallTheBudget) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   StreamOptions options = quickOptions(world.url());
   options.residentBudgetBytes = 1;
   SmallViewer viewer(options);
@@ -274,8 +239,7 @@ TEST(TileStream, NeverEvictsWhatIsDrawnHoweverSmallTheBudget) {
 }
 
 TEST(TileStream, KeepsTheMeshOnlyAsLongAsSomebodyElseDoes) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   viewer.stream().want(chain(path("cube/0")));
@@ -292,8 +256,7 @@ TEST(TileStream, KeepsTheMeshOnlyAsLongAsSomebodyElseDoes) {
 }
 
 TEST(TileStream, TheGroundIsThatOfTheFinestResidentTile) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   StreamOptions options = quickOptions(world.url());
   options.residentBudgetBytes = 1;
   SmallViewer viewer(options);
@@ -321,8 +284,7 @@ TEST(TileStream, TheGroundIsThatOfTheFinestResidentTile) {
 }
 
 TEST(TileStream, AnotherBodyStartsEmpty) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   ASSERT_TRUE(viewer.settle(chain(path("cube/0/1"))));
@@ -350,8 +312,7 @@ TEST(TileStream, DestructionInTheMiddleOfEverythingIsQuiet) {
 }
 
 TEST(TilePipeline, WhatIsReadyIsBoundedUntilItIsTaken) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   FetchOptions network;
   network.serverUrl = world.url();
   auto fetch = FetchQueue::open(network);

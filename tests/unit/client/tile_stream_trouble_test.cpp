@@ -8,9 +8,8 @@
 
 #include "client/tiles/disk_cache.h"
 #include "client/tiles/tile_stream.h"
-#include "proto/tile_url.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/client/small_world.h"
-#include "tests/unit/client/temporary_folder.h"
 
 namespace terrane {
 namespace {
@@ -20,16 +19,19 @@ using namespace terrane::testing;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::string target(const FacePath& tile, const std::string& revision = kRevision) {
-  return tileTarget({revision, "moon", tile});
-}
+using testing_support::TemporaryFolder;
 
 /// Answers a target that ends so wrongly for the first times it is asked for.
 SmallWorld::Rule wrongAtFirst(const std::string& ending, int times, const FakeReply& wrong) {
   return [=, left = times](const std::string& asked, const FakeReply& usual) mutable {
     return asked.ends_with(ending) && left-- > 0 ? wrong : usual;
   };
+}
+
+/// A viewer that came before and left its disk cache filled.
+bool fillCache(const StreamOptions& options, const std::vector<WantedTile>& wanted) {
+  SmallViewer viewer(options);
+  return viewer.waitForScene() && viewer.settle(wanted);
 }
 
 TEST(TileStreamTrouble, ADeadServerIsNamedAndTriedAgainUntilItIsThere) {
@@ -57,13 +59,7 @@ TEST(TileStreamTrouble, SaysInHowManySecondsItTriesAgain) {
 }
 
 TEST(TileStreamTrouble, ASilentServerIsSlowThenOffline) {
-  SmallWorld world;
-  world.setRule([](const std::string&, const FakeReply& usual) {
-    FakeReply reply = usual;
-    reply.hold = true;
-    return reply;
-  });
-  world.start();
+  RunningWorld world(holding(""));
   StreamOptions options = quickOptions(world.url());
   options.slowAfter = 20ms;
   options.requestTimeout = 2s;
@@ -77,13 +73,7 @@ TEST(TileStreamTrouble, ASilentServerIsSlowThenOffline) {
 }
 
 TEST(TileStreamTrouble, ARestartInTheMiddleOfLoadingIsOvercome) {
-  SmallWorld world;
-  world.setRule([](const std::string& asked, const FakeReply& usual) {
-    FakeReply reply = usual;
-    reply.hold = asked.ends_with("3.glb");
-    return reply;
-  });
-  world.start();
+  RunningWorld world(holding("3.glb"));
   SmallViewer viewer(quickOptions(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   const auto wanted = together({chain(path("cube/0/3333")), chain(path("cube/1/0123"))});
@@ -101,9 +91,7 @@ TEST(TileStreamTrouble, ARestartInTheMiddleOfLoadingIsOvercome) {
 }
 
 TEST(TileStreamTrouble, ABusyServerIsAskedAgainWhenItSaid) {
-  SmallWorld world;
-  world.setRule(wrongAtFirst("/cube/0/1.glb", 1, FakeReply{.status = 503, .headers = "Retry-After: 1\r\n"}));
-  world.start();
+  RunningWorld world(wrongAtFirst("/cube/0/1.glb", 1, FakeReply{.status = 503, .headers = "Retry-After: 1\r\n"}));
   SmallViewer viewer(quickOptions(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   const auto begun = std::chrono::steady_clock::now();
@@ -123,9 +111,7 @@ TEST(TileStreamTrouble, PassingErrorsAreTriedAgain) {
        {FakeReply{.status = 500}, FakeReply{.status = 503}, FakeReply{.status = 429}, FakeReply{.body = "no tile"},
         FakeReply{.body = ""}, FakeReply{.raw = "nonsense\r\n\r\n"},
         FakeReply{.body = smallTileBytes(path("cube/5"))}}) {
-    SmallWorld world;
-    world.setRule(wrongAtFirst("/cube/0/1.glb", 2, wrong));
-    world.start();
+    RunningWorld world(wrongAtFirst("/cube/0/1.glb", 2, wrong));
     SmallViewer viewer(quickOptions(world.url()));
     ASSERT_TRUE(viewer.waitForScene());
     ASSERT_TRUE(viewer.settle(chain(path("cube/0/1"))));
@@ -137,9 +123,7 @@ TEST(TileStreamTrouble, PassingErrorsAreTriedAgain) {
 
 TEST(TileStreamTrouble, WhatCannotBeHadIsAskedForOnceAndNamed) {
   for (const int status : {404, 400, 301}) {
-    SmallWorld world;
-    world.setRule(wrongAtFirst("/cube/0/1.glb", 1000, FakeReply{.status = status}));
-    world.start();
+    RunningWorld world(wrongAtFirst("/cube/0/1.glb", 1000, FakeReply{.status = status}));
     SmallViewer viewer(quickOptions(world.url()));
     ASSERT_TRUE(viewer.waitForScene());
     ASSERT_TRUE(viewer.settle(chain(path("cube/0/12"))));
@@ -155,9 +139,7 @@ TEST(TileStreamTrouble, WhatCannotBeHadIsAskedForOnceAndNamed) {
 
 TEST(TileStreamTrouble, ABrokenTileIsGivenUpAfterThreeTries) {
   for (const std::string& body : {std::string("glTF but not really"), smallTileBytes(path("cube/3/3"))}) {
-    SmallWorld world;
-    world.setRule(wrongAtFirst("/cube/0/1.glb", 1000, FakeReply{.body = body}));
-    world.start();
+    RunningWorld world(wrongAtFirst("/cube/0/1.glb", 1000, FakeReply{.body = body}));
     SmallViewer viewer(quickOptions(world.url()));
     ASSERT_TRUE(viewer.waitForScene());
     ASSERT_TRUE(viewer.settle(chain(path("cube/0/1"))));
@@ -168,9 +150,7 @@ TEST(TileStreamTrouble, ABrokenTileIsGivenUpAfterThreeTries) {
 }
 
 TEST(TileStreamTrouble, AWrongSceneIsNamedAndTriedAgain) {
-  SmallWorld world;
-  world.setRule(wrongAtFirst("scene.json", 3, FakeReply{.body = "{\"bodies\": 7}"}));
-  world.start();
+  RunningWorld world(wrongAtFirst("scene.json", 3, FakeReply{.body = "{\"bodies\": 7}"}));
   StreamOptions options = quickOptions(world.url());
   SmallViewer viewer(options);
   bool named = false;
@@ -183,8 +163,7 @@ TEST(TileStreamTrouble, AWrongSceneIsNamedAndTriedAgain) {
 }
 
 TEST(TileStreamTrouble, AGoneRevisionMovesOverWithoutAHole) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   const auto before = together({chain(path("cube/0/01")), chain(path("cube/0/02"))});
@@ -212,8 +191,7 @@ TEST(TileStreamTrouble, AGoneRevisionMovesOverWithoutAHole) {
 }
 
 TEST(TileStreamTrouble, AnOldSceneFromACacheOnTheWayIsAskedForAgainAndAgain) {
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   world.setRevision(kNextRevision);
@@ -226,8 +204,7 @@ TEST(TileStreamTrouble, AnOldSceneFromACacheOnTheWayIsAskedForAgainAndAgain) {
 
 TEST(TileStreamTrouble, ASecondStartNeedsNoServer) {
   const TemporaryFolder folder;
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   StreamOptions options = quickOptions(world.url());
   options.cacheFile = folder / "cache.sqlite";
   const auto wanted = together({chain(path("cube/0/0123")), chain(path("cube/2/3"))});
@@ -264,21 +241,12 @@ TEST(TileStreamTrouble, ASecondStartNeedsNoServer) {
 
 TEST(TileStreamTrouble, ASilentServerDoesNotKeepTheCacheFromBeingShown) {
   const TemporaryFolder folder;
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   StreamOptions options = quickOptions(world.url());
   options.cacheFile = folder / "cache.sqlite";
   const auto wanted = chain(path("cube/0/01"));
-  {
-    SmallViewer viewer(options);
-    ASSERT_TRUE(viewer.waitForScene());
-    ASSERT_TRUE(viewer.settle(wanted));
-  }
-  world.setRule([](const std::string&, const FakeReply& usual) {
-    FakeReply reply = usual;
-    reply.hold = true;
-    return reply;
-  });
+  ASSERT_TRUE(fillCache(options, wanted));
+  world.setRule(holding(""));
   options.slowAfter = 10ms;  // the request itself may take half a minute
   SmallViewer viewer(options);
   ASSERT_TRUE(viewer.waitForScene());
@@ -288,16 +256,11 @@ TEST(TileStreamTrouble, ASilentServerDoesNotKeepTheCacheFromBeingShown) {
 
 TEST(TileStreamTrouble, AnOldRevisionOnDiskIsLeftBehindWhenTheServerIsBack) {
   const TemporaryFolder folder;
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   StreamOptions options = quickOptions(world.url());
   options.cacheFile = folder / "cache.sqlite";
   const auto wanted = chain(path("cube/0/01"));
-  {
-    SmallViewer viewer(options);
-    ASSERT_TRUE(viewer.waitForScene());
-    ASSERT_TRUE(viewer.settle(wanted));
-  }
+  ASSERT_TRUE(fillCache(options, wanted));
   world.stop();
   world.setRevision(kNextRevision);
   SmallViewer viewer(options);
@@ -321,8 +284,7 @@ TEST(TileStreamTrouble, ACachedTileThatDoesNotDecodeIsDeletedAndFetched) {
     ASSERT_TRUE(cache);
     (*cache)->put(target(tile), {reinterpret_cast<const std::uint8_t*>(rubbish.data()), rubbish.size()});
   }
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   StreamOptions options = quickOptions(world.url());
   options.cacheFile = file;
   {
@@ -346,8 +308,7 @@ TEST(TileStreamTrouble, ADamagedCacheFileStopsNothingAndIsNamed) {
   ASSERT_TRUE(stream);
   std::fputs("this is not a database", stream);
   std::fclose(stream);
-  SmallWorld world;
-  world.start();
+  RunningWorld world;
   StreamOptions options = quickOptions(world.url());
   options.cacheFile = file;
   SmallViewer viewer(options);

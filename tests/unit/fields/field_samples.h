@@ -1,5 +1,5 @@
 #pragma once
-// Shared by the field tests: bodies, random directions, tile grids, one-call evaluation.
+// Shared by the field tests: random directions, tile grids, one-call evaluation.
 
 #include <cmath>
 #include <cstdint>
@@ -10,20 +10,11 @@
 #include "common/tiling/cube_sphere.h"
 #include "common/tiling/lattice.h"
 #include "server/fields/height_field.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane::test {
 
 inline constexpr double kMoonRadius = 1737400.0;
-
-inline Body moonBody(std::uint64_t seed = 1969) {
-  Body body;
-  body.name = "moon";
-  body.radiusMeters = kMoonRadius;
-  body.field = FieldKind::Lunar;
-  body.fieldParameters = defaultValues(fieldRow(FieldKind::Lunar).parameters);
-  body.seed = seed;
-  return body;
-}
 
 inline std::vector<SimdPath> supportedPaths() {
   std::vector<SimdPath> paths;

@@ -38,7 +38,7 @@ double climb(std::mt19937_64& random, int points, int rounds, double reachMeters
 }
 
 TEST(LunarBounds, NothingLeftOutMovesTheGroundByMoreThanStated) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   std::mt19937_64 random(41);
   for (const int level : {2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24}) {
     const double wavelength = 2 * tileSpacing(level);
@@ -59,7 +59,7 @@ TEST(LunarBounds, NothingLeftOutMovesTheGroundByMoreThanStated) {
 }
 
 TEST(LunarBounds, NothingIsLeftOutBetweenEqualWavelengthsAndMoreBetweenFarOnes) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   EXPECT_EQ(field->omittedAmplitudeMeters(10, 10), 0);
   EXPECT_EQ(field->omittedAmplitudeMeters(0, 0), 0);
   EXPECT_LT(field->omittedAmplitudeMeters(10, 1), field->omittedAmplitudeMeters(10, 0.1));
@@ -67,7 +67,7 @@ TEST(LunarBounds, NothingIsLeftOutBetweenEqualWavelengthsAndMoreBetweenFarOnes) 
 }
 
 TEST(LunarBounds, TheBilinearSurfaceIsAsNearAsStated) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   std::mt19937_64 random(43);
   for (const int level : {3, 6, 9, 12, 15, 18, 21, 24}) {
     const double wavelength = 2 * tileSpacing(level);
@@ -99,7 +99,7 @@ TEST(LunarBounds, TheBilinearSurfaceIsAsNearAsStated) {
 }
 
 TEST(LunarBounds, NoHeightLeavesTheRange) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   const HeightRange range = field->heightRange();
   std::mt19937_64 random(47);
   for (const double sign : {1.0, -1.0}) {

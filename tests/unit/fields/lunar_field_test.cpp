@@ -34,7 +34,7 @@ TilePlace randomTile(std::mt19937_64& random, int level) {
 TEST(LunarField, EverySimdPathGivesTheSameBits) {
   std::mt19937_64 random(7);
   std::vector<std::unique_ptr<const HeightField>> fields;
-  for (const SimdPath path : supportedPaths()) fields.push_back(makeHeightField(moonBody(), path));
+  for (const SimdPath path : supportedPaths()) fields.push_back(makeHeightField(testMoon(), path));
   for (int level = 0; level <= 26; level += 2) {
     const TilePlace t = randomTile(random, level);
     const Directions grid = tileGrid(t.face, t.level, t.column, t.row, 33);
@@ -50,7 +50,7 @@ TEST(LunarField, EverySimdPathGivesTheSameBits) {
 TEST(LunarField, ASampleDoesNotDependOnItsBatch) {
   std::mt19937_64 random(11);
   for (const SimdPath path : supportedPaths()) {
-    const auto field = makeHeightField(moonBody(), path);
+    const auto field = makeHeightField(testMoon(), path);
     SurfaceSamples reused;
     for (int level = 0; level <= 24; level += 4) {
       const TilePlace t = randomTile(random, level);
@@ -75,7 +75,7 @@ TEST(LunarField, ASampleDoesNotDependOnItsBatch) {
 }
 
 TEST(LunarField, TilesThatShareAnEdgeAgreeOnIt) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   for (int level = 1; level <= 24; level += 3) {
     const std::uint64_t last = (std::uint64_t{1} << level) - 1, middle = last / 2;
     const double wavelength = 2 * tileSpacing(level);
@@ -87,7 +87,7 @@ TEST(LunarField, TilesThatShareAnEdgeAgreeOnIt) {
 }
 
 TEST(LunarField, OneUlpOfDirectionMovesTheHeightByNextToNothing) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   std::mt19937_64 random(13);
   Directions a, b;
   for (int i = 0; i < 3000; ++i) {
@@ -106,7 +106,7 @@ TEST(LunarField, OneUlpOfDirectionMovesTheHeightByNextToNothing) {
 }
 
 TEST(LunarField, GradientsAgreeWithFiniteDifferences) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   std::mt19937_64 random(17);
   for (const double wavelength : {100000.0, 5000.0, 300.0, 20.0, 0.5}) {
     const double step = wavelength * 2e-3 + (wavelength < 4 ? 4e-3 : 1.0);  // well above the heights' rounding
@@ -142,7 +142,7 @@ TEST(LunarField, GradientsAgreeWithFiniteDifferences) {
 
 TEST(LunarField, IsFiniteAndInRangeAtPolesAxesCornersAndEverywhere) {
   for (const SimdPath path : supportedPaths()) {
-    const auto field = makeHeightField(moonBody(), path);
+    const auto field = makeHeightField(testMoon(), path);
     Directions points;
     for (int x = -1; x <= 1; ++x) {
       for (int y = -1; y <= 1; ++y) {
@@ -184,7 +184,7 @@ double meanReflectance(const HeightField& field, double latitude, double longitu
 }
 
 TEST(LunarField, SeasAreDarkAndHighlandsBrightWhereTheMoonHasThem) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   for (const glm::dvec2 sea : {glm::dvec2(28, 18), glm::dvec2(34, -17), glm::dvec2(17, 59), glm::dvec2(8, 31)}) {
     EXPECT_LT(meanReflectance(*field, sea.x, sea.y), 0.085) << sea.x << ' ' << sea.y;
   }
@@ -194,14 +194,14 @@ TEST(LunarField, SeasAreDarkAndHighlandsBrightWhereTheMoonHasThem) {
 }
 
 TEST(LunarField, SettingsAndSeedChangeTheIdentityAndTheGround) {
-  const auto plain = makeHeightField(moonBody(), bestSimdPath());
+  const auto plain = makeHeightField(testMoon(), bestSimdPath());
   Directions points;
   std::mt19937_64 random(29);
   for (int i = 0; i < 300; ++i) points.add(randomDirection(random));
   const SurfaceSamples before = evaluate(*plain, points, 100);
-  std::vector<Body> bodies{moonBody(1970)};
+  std::vector<Body> bodies{testMoon(1970)};
   for (const ParameterSpec& spec : fieldRow(FieldKind::Lunar).parameters) {
-    bodies.push_back(moonBody());
+    bodies.push_back(testMoon());
     bodies.back().fieldParameters.insert_or_assign(std::string(spec.name),
                                                    spec.defaultValue == spec.maximum ? spec.minimum : spec.maximum);
   }
@@ -223,7 +223,7 @@ TEST(LunarField, WorksForBodiesFromAsteroidToSun) {
   Directions points;
   for (int i = 0; i < 500; ++i) points.add(randomDirection(random));
   for (const double radius : {250.0, 5e4, 6.371e6, 7e8}) {
-    Body body = moonBody();
+    Body body = testMoon();
     body.radiusMeters = radius;
     const auto field = makeHeightField(body, bestSimdPath());
     const HeightRange range = field->heightRange();
@@ -236,7 +236,7 @@ TEST(LunarField, WorksForBodiesFromAsteroidToSun) {
 }
 
 TEST(LunarField, AnEmptyBatchGivesEmptyResults) {
-  const auto field = makeHeightField(moonBody(), bestSimdPath());
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
   SurfaceSamples samples = evaluate(*field, tileGrid(0, 3, 1, 1), 100);
   field->evaluate(SampleBatch{}, 100, samples);
   EXPECT_TRUE(samples.heightMeters.empty());

@@ -21,7 +21,7 @@ TEST(MakeHeightField, ConstructsWhatTheBodyNamesAndNothingElse) {
   EXPECT_EQ(counts.front().first, "field.sphere");
   EXPECT_EQ(counts.front().second, 1);
   resetConstructionCounts();
-  const auto moon = makeHeightField(moonBody(), bestSimdPath());
+  const auto moon = makeHeightField(testMoon(), bestSimdPath());
   ASSERT_EQ(constructionCounts().size(), 1u);
   EXPECT_EQ(constructionCounts().front().first, "field.lunar");
   EXPECT_NE(sphere->identity(), moon->identity());
@@ -31,7 +31,7 @@ TEST(SphereField, IsZeroWithoutGradientOrColour) {
   Body body;
   body.radiusMeters = 1000;
   const auto sphere = makeHeightField(body, bestSimdPath());
-  SurfaceSamples samples = evaluate(*makeHeightField(moonBody(), bestSimdPath()), tileGrid(0, 2, 1, 1), 1e5);
+  SurfaceSamples samples = evaluate(*makeHeightField(testMoon(), bestSimdPath()), tileGrid(0, 2, 1, 1), 1e5);
   const Directions grid = tileGrid(3, 2, 1, 1);
   sphere->evaluate(grid.batch(), 1, samples);
   ASSERT_EQ(samples.heightMeters.size(), grid.x.size());

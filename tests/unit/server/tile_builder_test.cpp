@@ -12,26 +12,18 @@
 #include "common/tiling/lattice.h"
 #include "proto/gltf_tile.h"
 #include "server/build/tile_topology.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {
 
 constexpr double kMoon = 1'737'400.0;
 constexpr unsigned kSeed = 64;
+constexpr std::uint64_t kBodySeed = 1;
 constexpr std::size_t kSide = 65;
 
-Body body(FieldKind field, double radius = kMoon) {
-  Body made;
-  made.name = "moon";
-  made.radiusMeters = radius;
-  made.field = field;
-  made.fieldParameters = defaultValues(fieldRow(field).parameters);
-  made.seed = 1;
-  return made;
-}
-
 const TileBuilder& moon() {
-  static const TileBuilder builder(body(FieldKind::Lunar), {}, bestSimdPath());
+  static const TileBuilder builder(testMoon(kBodySeed), {}, bestSimdPath());
   return builder;
 }
 
@@ -55,7 +47,7 @@ glm::dvec3 position(const Tile& tile, std::size_t vertex) {
 
 TEST(TileBuilder, PutsVerticesWhereTheFieldSaysWithinHalfAStep) {
   std::mt19937_64 random(kSeed);
-  const auto field = makeHeightField(body(FieldKind::Lunar), bestSimdPath());
+  const auto field = makeHeightField(testMoon(kBodySeed), bestSimdPath());
   SurfaceSamples samples;
   for (int level = 0; level <= moon().info().selection.maxLevel; level += 3) {
     const FacePath path = randomTile(random, level);
@@ -74,7 +66,7 @@ TEST(TileBuilder, PutsVerticesWhereTheFieldSaysWithinHalfAStep) {
 }
 
 TEST(TileBuilder, GivesTheBareSphereItsOwnDirectionsAsNormals) {
-  const TileBuilder builder(body(FieldKind::Sphere), {}, bestSimdPath());
+  const TileBuilder builder(testBody(FieldKind::Sphere, kMoon, kBodySeed), {}, bestSimdPath());
   for (const char* text : {"cube/0", "cube/3/0312", "cube/5/33333"}) {
     const Tile tile = mesh(builder, *FacePath::parse(text));
     EXPECT_TRUE(tile.mesh.colors.empty());
@@ -254,7 +246,7 @@ TEST(TileBuilder, GeometricErrorFallsStrictlyAndHoldsForTheFinerLevels) {
 
   // Against the finest surface, at the middles of cells, where a mesh is worst.
   std::mt19937_64 random(kSeed);
-  const auto field = makeHeightField(body(FieldKind::Lunar), bestSimdPath());
+  const auto field = makeHeightField(testMoon(kBodySeed), bestSimdPath());
   SurfaceSamples samples;
   int allBeyond = 0, all = 0;
   for (int level = 0; level + 1 < static_cast<int>(errors.size()); level += 2) {
@@ -313,8 +305,7 @@ TEST(TileBuilder, NamesTheBodyForViewers) {
   EXPECT_EQ(info.selection.maxLevel, maxLevel(kMoon));
   EXPECT_EQ(info.cellsPerEdge, 64);
   EXPECT_LT(info.selection.occluderRadiusMeters, kMoon + info.selection.heights.maxMeters);
-  Body other = body(FieldKind::Lunar);
-  other.seed = 2;
+  const Body other = testMoon(2);
   EXPECT_NE(TileBuilder(other, {}, bestSimdPath()).info().revision, info.revision);
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <condition_variable>
 #include <future>
 #include <mutex>
 #include <optional>
@@ -12,6 +11,8 @@
 #include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include "tests/support/build_gate.h"
 
 namespace terrane {
 namespace {
@@ -36,26 +37,12 @@ class CacheTest : public testing::Test {
 
   Result<CachedTilePtr> build(const TileKey& key) {
     {
-      std::unique_lock lock(mutex);
+      const std::lock_guard lock(mutex);
       built.push_back(key);
-      changed.notify_all();
-      changed.wait(lock, [this] { return !held; });
     }
+    gate.pass();
     if (onBuild) return onBuild(key);
     return tileOfBytes(tileBytes);
-  }
-  void hold() {
-    const std::lock_guard lock(mutex);
-    held = true;
-  }
-  void release() {
-    const std::lock_guard lock(mutex);
-    held = false;
-    changed.notify_all();
-  }
-  void waitUntilBuilding(std::size_t count) {
-    std::unique_lock lock(mutex);
-    changed.wait(lock, [&] { return built.size() >= count; });
   }
   /// An answer to come, shared with the worker that gives it: it may still be at it when the answer has been read.
   using Answer = std::promise<Result<CachedTilePtr>>;
@@ -73,9 +60,8 @@ class CacheTest : public testing::Test {
     return built;
   }
 
+  testing_support::BuildGate gate;
   std::mutex mutex;
-  std::condition_variable changed;
-  bool held = false;
   std::vector<TileKey> built;
   std::size_t tileBytes = 1000;
   std::function<Result<CachedTilePtr>(const TileKey&)> onBuild;
@@ -87,7 +73,7 @@ using TileCacheTest = CacheTest;
 
 TEST_F(TileCacheTest, ConcurrentRequestsForOneTileBuildOnce) {
   make(1 << 20, 100, 2);
-  hold();
+  gate.hold();
   constexpr int kWaiters = 32;
   std::atomic<int> answers{0};
   std::vector<std::unique_ptr<TileCache::Ticket>> tickets(kWaiters);
@@ -101,7 +87,7 @@ TEST_F(TileCacheTest, ConcurrentRequestsForOneTileBuildOnce) {
     });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(answers, 0);
-  release();
+  gate.release();
   while (answers < kWaiters) std::this_thread::yield();
   EXPECT_EQ(builtTiles().size(), 1u);
   EXPECT_EQ(cache->stats().builds, 1u);
@@ -127,9 +113,9 @@ TEST_F(TileCacheTest, ASecondRequestIsAnsweredAtOnceFromMemory) {
 
 TEST_F(TileCacheTest, DroppedTicketCancelsQueuedBuild) {
   make(1 << 20);
-  hold();
+  gate.hold();
   auto running = cache->getOrBuild(keyAt(1), [](const Result<CachedTilePtr>&) {});
-  waitUntilBuilding(1);
+  gate.waitForBuilds(1);
   bool called = false;
   auto dropped = cache->getOrBuild(keyAt(2), [&](const Result<CachedTilePtr>&) { called = true; });
   EXPECT_EQ(pool->queued(), 1u);
@@ -137,7 +123,7 @@ TEST_F(TileCacheTest, DroppedTicketCancelsQueuedBuild) {
   EXPECT_EQ(pool->queued(), 0u);
   EXPECT_EQ(cache->stats().dropped, 1u);
   EXPECT_EQ(cache->stats().inFlight, 1u);
-  release();
+  gate.release();
   EXPECT_TRUE(get(keyAt(3)));
   EXPECT_FALSE(called);
   EXPECT_THAT(builtTiles(), testing::ElementsAre(keyAt(1), keyAt(3)));
@@ -145,52 +131,52 @@ TEST_F(TileCacheTest, DroppedTicketCancelsQueuedBuild) {
 
 TEST_F(TileCacheTest, ABuildGoesOnWhileOneOfItsWaitersIsLeft) {
   make(1 << 20);
-  hold();
+  gate.hold();
   auto running = cache->getOrBuild(keyAt(1), [](const Result<CachedTilePtr>&) {});
-  waitUntilBuilding(1);
+  gate.waitForBuilds(1);
   const auto served = std::make_shared<Answer>();
   bool droppedCalled = false;
   auto first = cache->getOrBuild(keyAt(2), [&](const Result<CachedTilePtr>&) { droppedCalled = true; });
   auto second = ask(keyAt(2), served);
   first.reset();
-  release();
+  gate.release();
   EXPECT_TRUE(served->get_future().get());
   EXPECT_FALSE(droppedCalled);
 }
 
 TEST_F(TileCacheTest, AfterADroppedBuildTheTileCanBeAskedForAgain) {
   make(1 << 20);
-  hold();
+  gate.hold();
   auto running = cache->getOrBuild(keyAt(1), [](const Result<CachedTilePtr>&) {});
-  waitUntilBuilding(1);
+  gate.waitForBuilds(1);
   cache->getOrBuild(keyAt(2), [](const Result<CachedTilePtr>&) {}).reset();
-  release();
+  gate.release();
   EXPECT_TRUE(get(keyAt(2)));
 }
 
 TEST_F(TileCacheTest, ABuildThatRunsIsKeptEvenIfItsWaiterHasGone) {
   make(1 << 20);
-  hold();
+  gate.hold();
   auto ticket = cache->getOrBuild(keyAt(1), [](const Result<CachedTilePtr>&) { FAIL() << "the ticket was dropped"; });
-  waitUntilBuilding(1);
+  gate.waitForBuilds(1);
   ticket.reset();
-  release();
+  gate.release();
   EXPECT_TRUE(get(keyAt(2)));  // one worker: the first build has ended
   EXPECT_NE(cache->find(keyAt(1)), nullptr);
 }
 
 TEST_F(TileCacheTest, CoarserTilesAreBuiltFirst) {
   make(1 << 20);
-  hold();
+  gate.hold();
   std::vector<std::unique_ptr<TileCache::Ticket>> tickets;
   std::atomic<int> answers{0};
   const auto ask = [&](const TileKey& key) {
     tickets.push_back(cache->getOrBuild(key, [&](const Result<CachedTilePtr>&) { ++answers; }));
   };
   ask(keyAt(9));
-  waitUntilBuilding(1);
+  gate.waitForBuilds(1);
   for (const int level : {7, 2, 5, 0, 3}) ask(keyAt(level));
-  release();
+  gate.release();
   while (answers < 6) std::this_thread::yield();
   EXPECT_THAT(builtTiles(), testing::ElementsAre(keyAt(9), keyAt(0), keyAt(2), keyAt(3), keyAt(5), keyAt(7)));
 }
@@ -202,11 +188,11 @@ TEST_F(TileCacheTest, ErrorsAreNotCachedAndReachEveryWaiter) {
     if (fail) return makeError(ErrorKind::Internal, "", "no luck");
     return tileOfBytes(10);
   };
-  hold();
+  gate.hold();
   const auto one = std::make_shared<Answer>(), two = std::make_shared<Answer>();
   auto first = ask(keyAt(1), one);
   auto second = ask(keyAt(1), two);
-  release();
+  gate.release();
   EXPECT_EQ(one->get_future().get().error().message, "no luck");
   EXPECT_EQ(two->get_future().get().error().message, "no luck");
   EXPECT_EQ(cache->stats().entries, 0u);
@@ -225,9 +211,9 @@ TEST_F(TileCacheTest, AnExceptionOfABuildIsAnInternalError) {
 
 TEST_F(TileCacheTest, AFullQueueIsOverloadedAtOnce) {
   make(1 << 20, 1);
-  hold();
+  gate.hold();
   auto running = cache->getOrBuild(keyAt(1), [](const Result<CachedTilePtr>&) {});
-  waitUntilBuilding(1);
+  gate.waitForBuilds(1);
   auto queued = cache->getOrBuild(keyAt(2), [](const Result<CachedTilePtr>&) {});
   std::optional<ErrorKind> kind;
   const auto refused = cache->getOrBuild(keyAt(3), [&](Result<CachedTilePtr> tile) { kind = tile.error().kind; });
@@ -236,7 +222,7 @@ TEST_F(TileCacheTest, AFullQueueIsOverloadedAtOnce) {
   EXPECT_EQ(cache->stats().refused, 1u);
   auto joined = cache->getOrBuild(keyAt(2), [](const Result<CachedTilePtr>&) {});
   EXPECT_NE(joined, nullptr) << "joining needs no place in the queue";
-  release();
+  gate.release();
   EXPECT_TRUE(get(keyAt(2)));
 }
 
@@ -280,30 +266,30 @@ TEST_F(TileCacheTest, ACacheOfNoBytesStillServes) {
 
 TEST_F(TileCacheTest, DestroyingTheCacheCancelsQueuedAndRunningWaiters) {
   make(1 << 20);
-  hold();
+  gate.hold();
   const auto running = std::make_shared<Answer>(), queued = std::make_shared<Answer>();
   auto first = ask(keyAt(1), running);
-  waitUntilBuilding(1);
+  gate.waitForBuilds(1);
   auto second = ask(keyAt(2), queued);
   cache.reset();
   EXPECT_EQ(running->get_future().get().error().kind, ErrorKind::Cancelled);
   EXPECT_EQ(queued->get_future().get().error().kind, ErrorKind::Cancelled);
   first.reset();  // tickets may outlive their cache
-  release();
+  gate.release();
   pool.reset();
   EXPECT_EQ(builtTiles().size(), 1u);
 }
 
 TEST_F(TileCacheTest, APoolThatStopsCancelsWhatWaitsInItsQueue) {
   make(1 << 20);
-  hold();
+  gate.hold();
   auto first = cache->getOrBuild(keyAt(1), [](const Result<CachedTilePtr>&) {});
-  waitUntilBuilding(1);
+  gate.waitForBuilds(1);
   const auto queued = std::make_shared<Answer>();
   auto second = ask(keyAt(2), queued);
   std::thread stopper([&] { pool->stop(); });
   EXPECT_EQ(queued->get_future().get().error().kind, ErrorKind::Cancelled);
-  release();
+  gate.release();
   stopper.join();
   EXPECT_EQ(get(keyAt(3)).error().kind, ErrorKind::Overloaded);
 }

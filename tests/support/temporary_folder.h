@@ -1,5 +1,5 @@
 #pragma once
-// A folder of its own for one test, removed at its end.
+// A folder of its own for one test, below the system's temporary one, removed at its end.
 
 #include <stdlib.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace terrane::testing {
+namespace terrane::testing_support {
 
 class TemporaryFolder {
  public:
@@ -30,4 +30,4 @@ class TemporaryFolder {
   std::string path_;
 };
 
-}  // namespace terrane::testing
+}  // namespace terrane::testing_support
