@@ -193,7 +193,7 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
     SelectionSettings settings;
     settings.errorPixels = errorPixels;
     s.selection = selectTiles(
-        camera, body().selection, [&s](const FacePath& path) { return s.stream->resident(path); }, settings);
+        camera, body().selection, [&s](const FacePath& path) { return s.stream->known(path); }, settings);
     report.changed = moved || s.selection.draw != s.drawn;
     s.drawn = s.selection.draw;
     const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround);

@@ -11,6 +11,12 @@
 
 namespace terrane {
 
+void TileResidency::setRevision(const std::string& revision) {
+  if (revision == revision_) return;
+  revision_ = revision;
+  evicted_.clear();
+}
+
 void TileResidency::add(const std::shared_ptr<const Tile>& tile, const std::string& revision, std::size_t gpuBytes,
                         const LastWanted& wanted) {
   const FacePath& path = tile->metadata.path;
@@ -19,6 +25,7 @@ void TileResidency::add(const std::shared_ptr<const Tile>& tile, const std::stri
     ++countAtLevel_[static_cast<std::size_t>(path.level())];
     for (int level = 0; level < path.level(); ++level) ++descendants_[path.ancestor(level)];
   }
+  evicted_.forget(path);
   Resident& resident = at->second;
   bytes_ -= resident.bytes;
   resident.info = ResidentTile{tile->metadata.subtreeHeights, tile->metadata.heights};
@@ -39,7 +46,7 @@ const std::string* TileResidency::touch(const FacePath& path, const LastWanted& 
 
 const ResidentTile* TileResidency::find(const FacePath& path) const {
   const auto found = tiles_.find(path);
-  return found == tiles_.end() ? nullptr : &found->second.info;
+  return found == tiles_.end() ? evicted_.find(path) : &found->second.info;
 }
 
 std::shared_ptr<const Tile> TileResidency::mesh(const FacePath& path) const {
@@ -76,6 +83,8 @@ std::vector<FacePath> TileResidency::evict(std::size_t budgetBytes, const std::v
   while (bytes_ > budgetBytes && !candidates.empty()) {
     const FacePath path = std::get<FacePath>(candidates.top());
     candidates.pop();
+    const Resident& going = tiles_.at(path);
+    if (going.revision == revision_) evicted_.remember(path, going.info);
     remove(path);
     gone.push_back(path);
     // The nearest resident ancestor may now be without descendants.
@@ -91,6 +100,7 @@ std::vector<FacePath> TileResidency::evict(std::size_t budgetBytes, const std::v
 
 void TileResidency::clear() {
   tiles_.clear();
+  evicted_.clear();
   descendants_.clear();
   std::fill(countAtLevel_.begin(), countAtLevel_.end(), 0);
   bytes_ = 0;

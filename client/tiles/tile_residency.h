@@ -1,6 +1,7 @@
 #pragma once
 // The tiles that are on the GPU: what they cost, when each was wanted last, which may go when the budget is exceeded,
-// and where the ground is. No threads, no requests, no GL: bookkeeping for the GL thread.
+// what is remembered of those that went, and where the ground is. No threads, no requests, no GL: bookkeeping for the
+// GL thread.
 
 #include <chrono>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "client/tiles/evicted_heights.h"
 #include "client/tiles/ground_mesh.h"
 #include "common/tiling/face_path.h"
 #include "common/view/tile_selection.h"
@@ -24,14 +26,24 @@ struct LastWanted {
   std::chrono::steady_clock::time_point time;
 };
 
+/// Evicted tiles whose heights are remembered: some 8 MiB, several flights from orbit to the ground.
+inline constexpr std::size_t kRememberedTiles = 65'536;
+
 class TileResidency {
  public:
+  explicit TileResidency(std::size_t rememberedTiles = kRememberedTiles) : evicted_(rememberedTiles) {}
+
+  /// The revision in force. When it changes, what is remembered of evicted tiles is forgotten, for heights may differ;
+  /// resident tiles of another revision stay, but nothing is remembered of them.
+  void setRevision(const std::string& revision);
   /// Takes the place of a tile of the same path.
   void add(const std::shared_ptr<const Tile>& tile, const std::string& revision, std::size_t gpuBytes,
            const LastWanted& wanted);
   /// Notes that the tile is wanted. Null if it is not resident, else the revision it is of.
   const std::string* touch(const FacePath& path, const LastWanted& wanted);
 
+  /// What is known of a tile that is resident, or (drawable = false) of one that was. Valid until the next call that is
+  /// not const.
   const ResidentTile* find(const FacePath& path) const;
   /// Null if it is not resident or nobody keeps the mesh.
   std::shared_ptr<const Tile> mesh(const FacePath& path) const;
@@ -40,9 +52,11 @@ class TileResidency {
   /// what is in draw, what protects() says, and the ancestors of what stays.
   std::vector<FacePath> evict(std::size_t budgetBytes, const std::vector<FacePath>& draw,
                               const std::function<bool(const LastWanted&)>& protects);
+  /// Forgets the remembered ones too.
   void clear();
 
   std::size_t size() const noexcept { return tiles_.size(); }
+  std::size_t rememberedSize() const noexcept { return evicted_.size(); }
   std::size_t bytes() const noexcept { return bytes_; }
 
   struct Ground {
@@ -66,6 +80,8 @@ class TileResidency {
   void remove(const FacePath& path);
 
   std::unordered_map<FacePath, Resident> tiles_;
+  EvictedHeights evicted_;
+  std::string revision_;
   std::unordered_map<FacePath, int> descendants_;  ///< how many resident ones a path has, itself resident or not
   std::vector<int> countAtLevel_ = std::vector<int>(FacePath::kMaxLevel + 1);
   std::size_t bytes_ = 0;

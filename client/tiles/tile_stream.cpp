@@ -116,6 +116,7 @@ struct TileStream::State {
       sameRevisionAgain = 0;
       sceneStale = false;
       wantDue = true;
+      residency.setRevision(body->revision);
       cancelOrders();
       forgetFailures();
     } else if (sceneStale) {
@@ -143,6 +144,7 @@ struct TileStream::State {
   void selectBody(const BodyInfo& chosen) {
     const bool other = !body || body->name != chosen.name;
     body = &chosen;
+    residency.setRevision(body->revision);
     if (!other) return;
     cancelOrders();
     requests.clear();
@@ -317,7 +319,12 @@ void TileStream::markResident(const TilePtr& tile, std::size_t gpuBytes) { state
 
 std::vector<FacePath> TileStream::evict(const std::vector<FacePath>& draw) { return state_->evict(draw); }
 
-const ResidentTile* TileStream::resident(const FacePath& path) const { return state_->residency.find(path); }
+const ResidentTile* TileStream::resident(const FacePath& path) const {
+  const ResidentTile* tile = known(path);
+  return tile && tile->drawable ? tile : nullptr;
+}
+
+const ResidentTile* TileStream::known(const FacePath& path) const { return state_->residency.find(path); }
 
 TilePtr TileStream::tile(const FacePath& path) const { return state_->residency.mesh(path); }
 

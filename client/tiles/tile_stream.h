@@ -6,6 +6,8 @@
 //   absent -> queued -> fetching -> decoding -> ready (takeDecoded) -> resident (uploaded) -> evicted = absent
 //                \-> failed (back-off, then queued again)
 //
+// Of an evicted tile the heights are remembered, so that it is not fetched again only to learn that it is out of view.
+//
 // Hysteresis lives here, so that a camera that hovers at a threshold costs nothing: what is no longer wanted goes on
 // loading, behind all that is wanted, for kGraceCalls calls of want() or graceTime, whichever ends first; what was
 // wanted that recently is not evicted.
@@ -90,7 +92,11 @@ class TileStream {
   /// GL objects.
   std::vector<FacePath> evict(const std::vector<FacePath>& draw);
 
+  /// Null unless the tile's mesh is there to be drawn.
   const ResidentTile* resident(const FacePath& path) const;
+  /// For selection: also what is remembered of a tile that was evicted (drawable = false). The heights of the last
+  /// kRememberedTiles of them are, until the revision changes.
+  const ResidentTile* known(const FacePath& path) const;
   /// Null if it is not resident, or if nobody else keeps the mesh.
   TilePtr tile(const FacePath& path) const;
 
