@@ -39,8 +39,9 @@ echo "demo: serving the Moon on $url"
 
 headless=(--headless)
 [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && headless=()
-"$bin/terrane-view" --server "$url" "${headless[@]}" --size "$size" --flight descent --settle --step 4 --cache none \
-  --capture "$output/descent-%d.png" --stats "$output/stats.json"
+# Over the southern shore of Mare Imbrium, in the morning.
+"$bin/terrane-view" --server "$url" "${headless[@]}" --size "$size" --flight descent --camera=-16.4018,21.6039,1e7 --settle --step 4 \
+  --cache none --capture "$output/descent-%d.png" --stats "$output/stats.json"
 
 echo
 echo "demo: pictures and figures are in $output/"

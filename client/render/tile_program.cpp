@@ -8,9 +8,9 @@
 namespace terrane {
 namespace {
 
-/// Light on the display per unit of reflected light: highland soil (reflectance 0.16) under a high sun shows at 0.7 of
+/// Light on the display per unit of reflected light: highland soil (reflectance 0.16) under a high sun shows at 0.8 of
 /// the display's scale, and little is ever cut off above.
-constexpr float kExposure = 2.8f;
+constexpr float kExposure = 4.0f;
 
 const char* placementDefine(Placement placement) {
   switch (placement) {

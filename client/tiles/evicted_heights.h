@@ -1,7 +1,7 @@
 #pragma once
 // What is still known of tiles whose meshes were dropped: their heights, so that selection can tell that such a tile is
 // out of view without asking for it again. Bounded by the number of evictions that are remembered, the oldest being
-// forgotten first; an entry takes about 130 bytes. One thread.
+// forgotten first; an entry takes about 200 bytes. One thread.
 
 #include <cstddef>
 #include <cstdint>

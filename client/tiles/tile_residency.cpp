@@ -17,8 +17,8 @@ void TileResidency::setRevision(const std::string& revision) {
   evicted_.clear();
 }
 
-void TileResidency::add(const std::shared_ptr<const Tile>& tile, const std::string& revision, std::size_t gpuBytes,
-                        const LastWanted& wanted) {
+void TileResidency::add(const std::shared_ptr<const Tile>& tile, const ResidentTile& info, const std::string& revision,
+                        std::size_t gpuBytes, const LastWanted& wanted) {
   const FacePath& path = tile->metadata.path;
   const auto [at, isNew] = tiles_.try_emplace(path);
   if (isNew) {
@@ -28,7 +28,7 @@ void TileResidency::add(const std::shared_ptr<const Tile>& tile, const std::stri
   evicted_.forget(path);
   Resident& resident = at->second;
   bytes_ -= resident.bytes;
-  resident.info = ResidentTile{tile->metadata.subtreeHeights, tile->metadata.heights};
+  resident.info = info;
   resident.revision = revision;
   resident.ground = GroundMesh::fromTile(*tile);
   resident.mesh = tile;

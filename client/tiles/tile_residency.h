@@ -26,7 +26,7 @@ struct LastWanted {
   std::chrono::steady_clock::time_point time;
 };
 
-/// Evicted tiles whose heights are remembered: some 8 MiB, several flights from orbit to the ground.
+/// Evicted tiles whose heights are remembered: some 13 MiB, several flights from orbit to the ground.
 inline constexpr std::size_t kRememberedTiles = 65'536;
 
 class TileResidency {
@@ -37,8 +37,8 @@ class TileResidency {
   /// resident tiles of another revision stay, but nothing is remembered of them.
   void setRevision(const std::string& revision);
   /// Takes the place of a tile of the same path.
-  void add(const std::shared_ptr<const Tile>& tile, const std::string& revision, std::size_t gpuBytes,
-           const LastWanted& wanted);
+  void add(const std::shared_ptr<const Tile>& tile, const ResidentTile& info, const std::string& revision,
+           std::size_t gpuBytes, const LastWanted& wanted);
   /// Notes that the tile is wanted. Null if it is not resident, else the revision it is of.
   const std::string* touch(const FacePath& path, const LastWanted& wanted);
 

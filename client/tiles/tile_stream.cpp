@@ -10,6 +10,7 @@
 #include "client/tiles/scene_loader.h"
 #include "client/tiles/tile_pipeline.h"
 #include "client/tiles/tile_residency.h"
+#include "proto/resident_tile.h"
 #include "proto/tile_url.h"
 
 namespace terrane {
@@ -214,7 +215,8 @@ struct TileStream::State {
     const auto found = requests.find(tile->metadata.path);
     if (found == requests.end() || found->second.stage != Request::Stage::Uploading) return;  // of a body that was left
     --uploading;
-    residency.add(tile, found->second.revision, gpuBytes, found->second.wanted);
+    const ResidentTile info = residentTile(*tile, body->selection.radiusMeters);
+    residency.add(tile, info, found->second.revision, gpuBytes, found->second.wanted);
     requests.erase(found);
   }
 

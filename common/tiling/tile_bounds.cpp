@@ -173,22 +173,34 @@ TileBounds wholeBodyBounds(double rHigh) noexcept {
   return bounds;
 }
 
-}  // namespace
-
-TileBounds tileBounds(const FacePath& path, double radiusMeters, const HeightRange& heights,
+/// Of the part of a surface over `footprintPath` whose vertices lie on a lattice of this step.
+TileBounds boundsOver(const FacePath& footprintPath, double step, double radiusMeters, const HeightRange& heights,
                       double occluderRadiusMeters) noexcept {
-  const double step = stepMeters(stepExponent(radiusMeters, path.level()));
   const double rLow = radiusMeters + heights.minMeters - step;
   const double rHigh = radiusMeters + heights.maxMeters + step;
   if (!(rLow > 64.0 * step)) return wholeBodyBounds(rHigh);
 
-  const Footprint footprint = footprintOf(path, tangentPlaneMargin((1.0 + kSkirtFlareSteps) * step, rLow));
+  const Footprint footprint = footprintOf(footprintPath, tangentPlaneMargin((1.0 + kSkirtFlareSteps) * step, rLow));
   TileBounds bounds;
   bounds.hull = hullOf(footprint, rLow, rHigh);
   bounds.box = boxOf(footprint, rLow, rHigh);
   bounds.sphere = sphereOf(footprint, rLow, rHigh);
   bounds.horizonPoint = horizonPointOf(footprint, rHigh, occluderRadiusMeters);
   return bounds;
+}
+
+}  // namespace
+
+TileBounds tileBounds(const FacePath& path, double radiusMeters, const HeightRange& heights,
+                      double occluderRadiusMeters) noexcept {
+  const double step = stepMeters(stepExponent(radiusMeters, path.level()));
+  return boundsOver(path, step, radiusMeters, heights, occluderRadiusMeters);
+}
+
+TileBounds tileQuarterBounds(const FacePath& path, int digit, double radiusMeters, const HeightRange& heights,
+                             double occluderRadiusMeters) noexcept {
+  const double step = stepMeters(stepExponent(radiusMeters, path.level()));
+  return boundsOver(path.child(digit), step, radiusMeters, heights, occluderRadiusMeters);
 }
 
 double lowestSurfaceRadiusMeters(double radiusMeters, double lowestHeightMeters, int cellsPerEdge) noexcept {

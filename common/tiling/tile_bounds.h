@@ -49,6 +49,11 @@ struct TileBounds {
 TileBounds tileBounds(const FacePath& path, double radiusMeters, const HeightRange& heights,
                       double occluderRadiusMeters) noexcept;
 
+/// The same for a quarter of a tile's own mesh, the part over its child `digit`: vertices lie on the tile's lattice,
+/// not the child's. Precondition: path.level() < FacePath::kMaxLevel.
+TileBounds tileQuarterBounds(const FacePath& path, int digit, double radiusMeters, const HeightRange& heights,
+                             double occluderRadiusMeters) noexcept;
+
 /// The radius of a sphere that no triangle of any drawn tile dips below, given the lowest height of the body and the
 /// number of cells on a tile's edge: (R + min) times the cosine of half the diagonal of a level-0 cell.
 double lowestSurfaceRadiusMeters(double radiusMeters, double lowestHeightMeters, int cellsPerEdge) noexcept;

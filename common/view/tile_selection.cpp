@@ -102,12 +102,12 @@ class Selector {
     // The first unknown tile below a known one decides what may be drawn. Those below it are only asked for ahead of
     // time.
     node.visible = mayBeSeen(boundsOf(node.path, node.guesses > 1 ? node.ownHeights : node.subtreeHeights));
-    if (node.visible) judge(node, tile != nullptr && tile->ownHeights);
+    if (node.visible) judge(node, tile);
     visibleCount_ += node.visible ? 1 : 0;
     nodes_.push_back(node);
   }
 
-  void judge(Node& node, bool ownHeightsKnown) const {
+  void judge(Node& node, const ResidentTile* tile) const {
     const double error = errorMeters(node.path.level());
     if (!node.known) {
       // An ancestor's heights span more than this tile's: a camera between them would seem to touch the ground
@@ -119,7 +119,17 @@ class Selector {
     const TileBounds own = boundsOf(node.path, node.ownHeights);
     node.errorPixels = screenSpaceErrorPixels(error, own.box, camera_);
     // A tile that has no reason to be refined is seen by its own mesh or not at all.
-    if (ownHeightsKnown && !wantsChildren(node)) node.visible = mayBeSeen(own);
+    if (tile->ownHeights && !wantsChildren(node)) node.visible = mayBeSeen(own) && aQuarterMayBeSeen(node.path, *tile);
+  }
+
+  bool aQuarterMayBeSeen(const FacePath& path, const ResidentTile& tile) const {
+    if (!tile.quarterHeights || path.level() >= FacePath::kMaxLevel) return true;
+    for (int digit = 0; digit < 4; ++digit) {
+      const HeightRange& heights = (*tile.quarterHeights)[static_cast<std::size_t>(digit)];
+      if (mayBeSeen(tileQuarterBounds(path, digit, body_.radiusMeters, heights, body_.occluderRadiusMeters)))
+        return true;
+    }
+    return false;
   }
 
   bool wantsChildren(const Node& node) const {

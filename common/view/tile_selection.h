@@ -11,6 +11,7 @@
 // that is not known yet, selection guesses from the nearest known ancestor's ground: so that a chain of ancestors can
 // be asked for in one go, without asking for all that might be there. As tiles arrive, guesses give way to proofs.
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -40,6 +41,8 @@ struct SelectionBody {
 struct ResidentTile {
   HeightRange subtreeHeights;
   std::optional<HeightRange> ownHeights = std::nullopt;
+  /// Of its mesh over each child's footprint: a tile that is drawn itself is left out if none of the four is in view.
+  std::optional<std::array<HeightRange, 4>> quarterHeights = std::nullopt;
   bool drawable = true;
 };
 /// Returns null for a tile that nothing is known of. Called from the calling thread only.

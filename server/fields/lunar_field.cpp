@@ -381,7 +381,7 @@ double LunarField::interpolationErrorMeters(double minWavelengthMeters, double s
 HeightRange LunarField::heightRange() const noexcept { return bounds_.heightRange(); }
 
 std::string LunarField::identity() const {
-  return fmt::format("lunar 1 seed={} mare={:a} craters={:a} roughness={:a} rocks={:a} finest={:a}", seed_,
+  return fmt::format("lunar 2 seed={} mare={:a} craters={:a} roughness={:a} rocks={:a} finest={:a}", seed_,
                      mareFraction_, craterDensity_, roughness_, rockDensity_, finestDetail_);
 }
 

@@ -133,14 +133,16 @@ void addRegolith(const NoiseGroup& group, double footprint, Block& b, OctaveSamp
   for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(group.rotation[i]);
   OctaveSamples<float> n, sum;
   for (std::size_t i = 0; i < b.count; ++i) sum.value[i] = sum.x[i] = sum.y[i] = sum.z[i] = 0.0f;
+  constexpr double kMottle = 0.35;  // an octave; all alike, so that none shows where it enters
   for (std::size_t k = 0; k < group.count; ++k) {
     const NoiseOctave& octave = group.octaves[k];
     evaluateOctave<float>(rotated, octave, n);
-    const float a = static_cast<float>(octave.amplitude);
-    const float da = static_cast<float>(octave.amplitude * octave.inverseWavelength *
-                                        keptSlope(footprint, octave.inverseWavelength));
+    const double kept = keptSlope(footprint, octave.inverseWavelength);
+    const float a = static_cast<float>(octave.amplitude), mottle = static_cast<float>(kMottle * kept);
+    const float da = static_cast<float>(octave.amplitude * octave.inverseWavelength * kept);
     for (std::size_t i = 0; i < b.count; ++i) {
       sum.value[i] += a * n.value[i];
+      b.mottle[i] += mottle * n.value[i];
       sum.x[i] += da * n.x[i];
       sum.y[i] += da * n.y[i];
       sum.z[i] += da * n.z[i];
@@ -149,7 +151,6 @@ void addRegolith(const NoiseGroup& group, double footprint, Block& b, OctaveSamp
   const NoiseOctave& finest = group.octaves[group.count - 1];
   const float toUnit = static_cast<float>(finest.inverseWavelength);
   const float modulation = static_cast<float>(group.modulation);
-  const float toMottle = 1.0f / static_cast<float>(group.octaves[0].amplitude);
   for (std::size_t i = 0; i < b.count; ++i) {
     float gx, gy, gz;
     rotateBack(m, sum.x[i], sum.y[i], sum.z[i], gx, gy, gz);
@@ -158,7 +159,6 @@ void addRegolith(const NoiseGroup& group, double footprint, Block& b, OctaveSamp
     b.roughX[i] += scale * gx + v * last.x[i];
     b.roughY[i] += scale * gy + v * last.y[i];
     b.roughZ[i] += scale * gz + v * last.z[i];
-    b.mottle[i] += toMottle * sum.value[i];
     last.value[i] = n.value[i];
     rotateBack(m, toUnit * n.x[i], toUnit * n.y[i], toUnit * n.z[i], last.x[i], last.y[i], last.z[i]);
   }

@@ -17,6 +17,7 @@
 #include "common/tiling/cube_sphere.h"
 #include "common/view/tile_selection.h"
 #include "proto/gltf_tile.h"
+#include "proto/resident_tile.h"
 #include "server/build/tile_builder.h"
 #include "server/scenes/scene_file.h"
 #include "tests/bench/bare_loop.h"
@@ -63,7 +64,7 @@ TileSelection settle(const TileBuilder& builder, const Camera& camera, Tiles& ti
     for (const WantedTile& wanted : selection.wanted) {
       if (resident.contains(wanted.path)) continue;
       auto tile = decodeTile(builder.build(wanted.path).value().glb);
-      resident[wanted.path] = {tile.value().metadata.subtreeHeights, tile.value().metadata.heights};
+      resident[wanted.path] = residentTile(tile.value(), builder.body().radiusMeters);
       tiles[wanted.path] = std::make_shared<const Tile>(std::move(tile.value()));
       added = true;
     }

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "client/gl/capabilities.h"
+#include "proto/resident_tile.h"
 #include "server/fields/height_field.h"
 #include "server/scenes/scene_file.h"
 
@@ -59,7 +60,7 @@ std::shared_ptr<const Tile> TileSource::tile(const FacePath& path) {
   std::shared_ptr<const Tile>& slot = tiles_[path];
   if (!slot) {
     slot = std::make_shared<const Tile>(require(builder_.buildMesh(path)));
-    resident_[path] = ResidentTile{slot->metadata.subtreeHeights, slot->metadata.heights};
+    resident_[path] = residentTile(*slot, builder_.body().radiusMeters);
   }
   return slot;
 }

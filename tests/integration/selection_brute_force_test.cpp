@@ -21,6 +21,7 @@
 #include "common/view/frustum.h"
 #include "common/view/horizon.h"
 #include "common/view/tile_selection.h"
+#include "proto/resident_tile.h"
 #include "server/build/tile_builder.h"
 #include "tests/support/moon_body.h"
 
@@ -68,7 +69,7 @@ class Terrain {
       ADD_FAILURE() << tile.error().text();
       return ground;
     }
-    ground.resident = {tile->metadata.subtreeHeights, tile->metadata.heights};
+    ground.resident = residentTile(*tile, builder_.body().radiusMeters);
     for (std::size_t vertex = 0; vertex < (kCells + 1) * (kCells + 1); ++vertex) {
       const std::uint16_t* offset = tile->mesh.offsets.data() + 3 * vertex;
       ground.points.push_back(latticePosition(tile->metadata.origin + LatticePoint(offset[0], offset[1], offset[2]),

@@ -11,8 +11,9 @@
 
 #include "client/controls/camera_controls.h"
 #include "common/view/tile_selection.h"
+#include "proto/resident_tile.h"
 #include "server/build/tile_builder.h"
-#include "tests/integration/moon_body.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {
@@ -59,7 +60,7 @@ class PatientViewer {
         ADD_FAILURE() << tile.path.text() << ": " << built.error().text();
         return false;
       }
-      residents_.emplace(tile.path, ResidentTile{built->metadata.subtreeHeights, built->metadata.heights});
+      residents_.emplace(tile.path, residentTile(*built, builder_.body().radiusMeters));
     }
     return residents_.size() != before;
   }

@@ -25,7 +25,8 @@ class SmallResidency {
     Tile made = smallTile(path(tile), [&](const glm::dvec3&) { return heightMeters; });
     made.metadata.heights = {heightMeters - 1, heightMeters + 1};
     made.metadata.subtreeHeights = {heightMeters - 10, heightMeters + 10};
-    residency.add(std::make_shared<const Tile>(std::move(made)), revision, kGpuBytes, LastWanted{++call_, {}});
+    const ResidentTile info{made.metadata.subtreeHeights, made.metadata.heights};
+    residency.add(std::make_shared<const Tile>(std::move(made)), info, revision, kGpuBytes, LastWanted{++call_, {}});
   }
   std::vector<FacePath> evictAll() {
     return residency.evict(0, {}, [](const LastWanted&) { return false; });
