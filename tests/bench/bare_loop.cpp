@@ -22,15 +22,16 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 color;
 uniform mat4 matrix;
-out vec3 shadedNormal;
 out vec3 shadedColor;
-void main() { shadedNormal = normal; shadedColor = color.rgb; gl_Position = matrix * vec4(position, 1.0); }
+void main() {
+  shadedColor = color.rgb * max(dot(normal, vec3(0.6, 0.64, 0.48)), 0.0);
+  gl_Position = matrix * vec4(position, 1.0);
+}
 )";
 constexpr const char* kFragmentShader = R"(#version 330 core
-in vec3 shadedNormal;
 in vec3 shadedColor;
 out vec4 pixel;
-void main() { pixel = vec4(shadedColor * max(dot(shadedNormal, vec3(0.6, 0.64, 0.48)), 0.0), 1.0); }
+void main() { pixel = vec4(shadedColor, 1.0); }
 )";
 
 unsigned compile(GLenum kind, const char* source) {

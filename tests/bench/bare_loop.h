@@ -1,6 +1,6 @@
 #pragma once
 // The yardstick for a viewer's frame: the same triangles, camera-relative float positions ready in vertex buffers, one
-// matrix, one dot product a pixel; nothing is selected, placed or streamed. GL thread only.
+// matrix, one dot product a vertex; nothing is selected, placed or streamed. GL thread only.
 
 #include <glm/vec3.hpp>
 #include <memory>

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <string_view>
 #include <unordered_map>
 
@@ -84,6 +85,11 @@ void measureView(const char* name, const ViewPose& pose, const TileBuilder& buil
     renderer.upload(tiles.at(path));
     drawn.push_back(tiles.at(path));
   }
+  // Nearest first, as the renderer draws them: what is hidden behind is then not shaded by either.
+  std::ranges::stable_sort(drawn, {}, [&](const auto& tile) {
+    const Sphere& sphere = tile->metadata.sphere;
+    return glm::length(sphere.center - camera.positionBody) - sphere.radiusMeters;
+  });
   const bench::BareLoop bare(camera, drawn);
   const auto lookup = [&](const FacePath& path) -> const ResidentTile* {
     const auto found = resident.find(path);

@@ -140,6 +140,66 @@ TEST(LunarField, GradientsAgreeWithFiniteDifferences) {
   }
 }
 
+TEST(LunarField, GradientsOverAFootprintAreThoseOfTheGroundAveragedOverIt) {
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
+  std::mt19937_64 random(18);
+  for (const int level : {5, 10, 15, 19}) {
+    const double cell = tileSpacing(level);
+    Directions points;
+    std::vector<glm::dvec3> tangents;
+    for (int i = 0; i < 1500; ++i) {
+      const glm::dvec3 d = randomDirection(random);
+      tangents.push_back(glm::normalize(glm::cross(d, randomDirection(random))));
+      points.add(d);
+      points.add(glm::normalize(d + tangents.back() * (cell / kMoonRadius)));
+      points.add(glm::normalize(d - tangents.back() * (cell / kMoonRadius)));
+    }
+    SurfaceSamples exact, averaged;
+    SampleBatch batch = points.batch();
+    field->evaluate(batch, 2 * cell, exact);
+    batch.footprintMeters = cell;
+    field->evaluate(batch, 2 * cell, averaged);
+    const auto squareError = [&](const SurfaceSamples& s) {
+      double sum = 0;
+      for (std::size_t i = 0; i < tangents.size(); ++i) {
+        const double mean = (exact.heightMeters[3 * i + 1] - exact.heightMeters[3 * i + 2]) / (2 * cell);
+        const glm::dvec3 gradient(s.gradientX[3 * i], s.gradientY[3 * i], s.gradientZ[3 * i]);
+        const double error = glm::dot(gradient, tangents[i]) - mean;
+        sum += error * error;
+      }
+      return sum / static_cast<double>(tangents.size());
+    };
+    const double point = std::sqrt(squareError(exact)), footprint = std::sqrt(squareError(averaged));
+    std::printf("level %d: error rms of gradients at the point %.4f, over a footprint %.4f\n", level, point, footprint);
+    EXPECT_LT(footprint, 0.75 * point) << level;
+    EXPECT_EQ(averaged.heightMeters, exact.heightMeters) << "heights are those of the point";
+  }
+}
+
+TEST(LunarField, SamplesDoNotDependOnWhatWasGatheredBefore) {
+  const auto field = makeHeightField(testMoon(), bestSimdPath());
+  std::mt19937_64 random(12);
+  for (int level = 2; level <= 24; level += 2) {
+    const TilePlace t = randomTile(random, level);
+    SurfaceSamples reused;
+    field->evaluate(tileGrid(t.face, t.level, t.column, t.row).batch(), 2 * tileSpacing(level), reused);
+    // A border at the next finer level, then at the next coarser one, then the tile beside, in the same memory.
+    const std::uint64_t beside = t.column ^ 1u;
+    for (const int other : {level + 1, level - 1, level}) {
+      Directions edge;
+      if (other == level) {
+        edge = tileGrid(t.face, t.level, beside, t.row);
+      } else {
+        for (std::uint64_t k = 0; k <= 128; ++k)
+          edge.add(cubeGridDirection(t.face, level + 7, t.column * 128 + k, t.row * 128));
+      }
+      field->evaluate(edge.batch(), 2 * tileSpacing(other), reused);
+      const SurfaceSamples fresh = evaluate(*field, edge, 2 * tileSpacing(other));
+      for (std::size_t i = 0; i < edge.x.size(); ++i) ASSERT_TRUE(sameBits(fresh, i, reused, i)) << level << ' ' << i;
+    }
+  }
+}
+
 TEST(LunarField, IsFiniteAndInRangeAtPolesAxesCornersAndEverywhere) {
   for (const SimdPath path : supportedPaths()) {
     const auto field = makeHeightField(testMoon(), path);
