@@ -21,7 +21,8 @@ constexpr std::array kSunParameters{
 // In the order of EffectKind.
 constexpr std::array kEffects{
     EffectRow{EffectKind::Sun, "sun", "sunlight from one direction, with a night side", "surface normals of the tiles",
-              "one dot product a vertex; no pass, texture or buffer of its own", EffectSide::Client, kSunParameters},
+              "one dot product a vertex and one power a pixel; no pass, texture or buffer of its own",
+              EffectSide::Client, kSunParameters},
 };
 static_assert(kEffects.size() == kEffectKindCount, "every kind of effect has its row");
 static_assert(

@@ -212,4 +212,11 @@ RotatedBlock rotateBlock(Block& b, const double* m) {
   return r;
 }
 
+/// What is left of a wave's slope when it is averaged over +-footprint: sin(pi u) / (pi u) with u = 2 footprint /
+/// wavelength, by the first factors of its product.
+TERRANE_INLINE double keptSlope(double footprint, double inverseWavelength) {
+  const double u = 2.0 * footprint * inverseWavelength, square = u * u;
+  return square < 1.0 ? (1.0 - square) * (1.0 - 0.25 * square) : 0.0;
+}
+
 }  // namespace
