@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Everything that a change must pass: installs what is missing, builds, tests. The last lines are ctest's.
 # Usage: deploy/test.sh [--full]
-#   --full adds: debug, Clang and -march=native builds, clang-tidy, ten minutes of fuzzing, 200 random cameras
+#   --full adds: debug, Clang and -march=native builds, clang-tidy, ten minutes of fuzzing, 200 random cameras,
+#   10,000 cameras of tile selection against brute force
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -56,7 +57,7 @@ if $full; then
   cmake --preset fuzz -DTERRANE_FUZZ_SECONDS=100 >/dev/null
   cmake --build --preset fuzz
   ctest --test-dir build/fuzz -L fuzz --output-on-failure
-  export TERRANE_CAMERAS=200
+  export TERRANE_CAMERAS=200 TERRANE_SELECTION_CAMERAS=10000
 fi
 
 step "all tests: release"

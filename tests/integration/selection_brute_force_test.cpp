@@ -1,6 +1,6 @@
 // Tile selection against brute force: what random cameras really see of the lunar terrain, vertex by vertex, with the
 // lowest terrain as the only occluder. A tile that selection culls must have no visible vertex; a tile that it asks for
-// should be in view. TERRANE_CAMERAS sets the number of cameras, TERRANE_SEED the seed.
+// should be in view. TERRANE_SELECTION_CAMERAS sets the number of cameras, TERRANE_SEED the seed.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ constexpr long kCamerasForShare = 40;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int kDefaultCameras = 4;
 #else
-constexpr int kDefaultCameras = 60;
+constexpr int kDefaultCameras = 150;
 #endif
 long environmentNumber(const char* name, long otherwise) {
   const char* text = std::getenv(name);
@@ -248,7 +248,7 @@ Count judge(const Camera& camera, GroundCache& ground) {
 }
 
 TEST(SelectionBruteForce, OmitsNoVisibleVertexAndAsksForFewTilesOutOfView) {
-  const long cameras = environmentNumber("TERRANE_CAMERAS", kDefaultCameras);
+  const long cameras = environmentNumber("TERRANE_SELECTION_CAMERAS", kDefaultCameras);
   const long seed = environmentNumber("TERRANE_SEED", 10'000);
   std::mutex mutex;
   Count total;
