@@ -16,11 +16,11 @@ struct LevelAccuracy {
   double geometricErrorMeters = 0;  ///< estimate, strictly decreasing with the level; see kErrorPerCell
 };
 
-/// Geometric error of a level, in widths of its cells. The deepest thing that a level leaves out is a fresh simple
-/// crater as wide as the shortest wavelength it shows, two cells; its depth is 0.196 of its width (Pike 1977,
-/// "Size-dependence in the shape of fresh impact craters on the moon"): 0.4 cells. At the default tolerance of 2 pixels
-/// a cell then covers up to 5 pixels. The sum of all octaves' worst cases, which subtreeSlackMeters is, would be
-/// several times that, and never seen.
+/// Geometric error of a level, in widths of its cells. The deepest thing that a level leaves out is a crater whose
+/// radius is the shortest wavelength it shows, two cells. Fresh, it is 0.196 of its width deep (Pike 1977,
+/// "Size-dependence in the shape of fresh impact craters on the moon"): 0.8 cells; worn as most are, half that. At the
+/// default tolerance of 2 pixels a cell then covers up to 5 pixels. The sum of all octaves' worst cases, which
+/// subtreeSlackMeters is, would be several times that, and never seen.
 inline constexpr double kErrorPerCell = 0.4;
 
 /// Levels 0 .. maxLevel.

@@ -48,7 +48,7 @@ std::span<const FeatureRun> FeatureGathering::runs(const std::shared_ptr<const F
   if (!covers(*tables, points)) start(tables, points.ball);
   const std::vector<FeatureLayer>& layers = tables_->layers;
   std::size_t count = 0;
-  while (count < layers.size() && layers[count].wavelengthMeters() >= minWavelength) ++count;
+  while (count < layers.size() && layers[count].longestWavelengthMeters() >= minWavelength) ++count;
   while (layerEnds_.size() < count) {
     gatherFeatures(layers[layerEnds_.size()], tables_->bodyRadius, ball_.center, ball_.radius, features_);
     layerEnds_.push_back(features_.size());

@@ -33,8 +33,8 @@ struct FeatureTables {
 
 class FeatureGathering {
  public:
-  /// Features that may reach any of the points and have wavelengths of at least minWavelength, coarse to fine, within a
-  /// layer by face, row and column, landmarks last: the order of the sums. Valid until the next call.
+  /// Features that may reach any of the points, of all layers with wavelengths of at least minWavelength, coarse to
+  /// fine, within a layer by face, row and column, landmarks last: the order of the sums. Valid until the next call.
   /// inDouble: large features are computed in double.
   std::span<const FeatureRun> runs(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
                                    double minWavelength, bool inDouble);

@@ -34,8 +34,10 @@ struct FeatureLayer {
 
   double smallestDiameter() const noexcept;
   double largestDiameter() const noexcept { return 2 * smallestDiameter(); }
-  /// The shortest wavelength that a layer needs to be sampled with: half its smallest diameter.
+  /// A feature's wavelength is its radius: a level shows it, fading in with its size, from two cells on. These are the
+  /// layer's shortest and longest.
   double wavelengthMeters() const noexcept { return 0.5 * smallestDiameter(); }
+  double longestWavelengthMeters() const noexcept { return 0.5 * largestDiameter(); }
 };
 
 /// The outline's lobes stay within 1 +- this.

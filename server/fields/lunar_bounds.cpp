@@ -102,7 +102,7 @@ void widen(FeatureBounds& to, const FeatureBounds& with) noexcept {
 
 /// Features that may overlap freely: at any point the sum runs over a set whose members all overlap one of them.
 BoundedComponent overlapping(std::span<const Feature> features, std::size_t subject) noexcept {
-  BoundedComponent sum{Part::Young, 0, 0, 0, 0, 0};
+  BoundedComponent sum{Part::Young, 0, 0, true, 0, 0, 0, 0};
   for (const Feature& f : features) {
     const double* a = f.center;
     const double* b = features[subject].center;
@@ -129,7 +129,7 @@ constexpr double kAlways = std::numeric_limits<double>::infinity();
 void addNoiseBounds(std::span<const NoiseGroup> groups, std::vector<BoundedComponent>& out) {
   const auto addNoise = [&](Part part, double wavelength, double amplitude) {
     const double a = std::fabs(amplitude);
-    out.push_back({part, wavelength, -a * kNoiseBound, a * kNoiseBound, a * kNoiseSlope / wavelength,
+    out.push_back({part, wavelength, wavelength, false, -a * kNoiseBound, a * kNoiseBound, a * kNoiseSlope / wavelength,
                    a * kNoiseCurvature / (wavelength * wavelength)});
   };
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -157,7 +157,7 @@ void addNoiseBounds(std::span<const NoiseGroup> groups, std::vector<BoundedCompo
 void addLandmarkBounds(std::span<const Feature> landmarks, std::vector<BoundedComponent>& out) {
   // Landmark craters come by falling size, so those that a level leaves out are a tail: the k-th component is what the
   // k-th adds.
-  BoundedComponent before{Part::Young, 0, 0, 0, 0, 0};
+  BoundedComponent before{Part::Young, 0, 0, true, 0, 0, 0, 0};
   for (std::size_t k = landmarks.size(); k-- > 0;) {
     BoundedComponent worst = before;
     for (std::size_t subject = k; subject < landmarks.size(); ++subject) {
@@ -167,17 +167,17 @@ void addLandmarkBounds(std::span<const Feature> landmarks, std::vector<BoundedCo
       worst.slope = std::max(worst.slope, sum.slope);
       worst.curvature = std::max(worst.curvature, sum.curvature);
     }
-    out.push_back({Part::Young, landmarks[k].radius, worst.low - before.low, worst.high - before.high,
-                   worst.slope - before.slope, worst.curvature - before.curvature});
+    out.push_back({Part::Young, landmarks[k].radius, landmarks[k].radius, true, worst.low - before.low,
+                   worst.high - before.high, worst.slope - before.slope, worst.curvature - before.curvature});
     before = worst;
   }
 }
 
 void addBasinBounds(const Program& program, std::vector<BoundedComponent>& out) {
   // Basins: slopes and curvatures from their closed forms, each taken where it is largest, all overlapping.
-  BoundedComponent basins{Part::Relief, kAlways, 0, 0, 0, 0};
+  BoundedComponent basins{Part::Relief, kAlways, kAlways, false, 0, 0, 0, 0};
   for (std::size_t i = 0; i < program.basinCount; ++i) {
-    BoundedComponent sum{Part::Relief, kAlways, 0, 0, 0, 0};
+    BoundedComponent sum{Part::Relief, kAlways, kAlways, false, 0, 0, 0, 0};
     for (std::size_t j = 0; j < program.basinCount; ++j) {
       const Basin &a = program.basins[i], &b = program.basins[j];
       const double dx = a.center[0] - b.center[0], dy = a.center[1] - b.center[1], dz = a.center[2] - b.center[2];
@@ -203,7 +203,7 @@ void addBasinBounds(const Program& program, std::vector<BoundedComponent>& out) 
 void addPatchBounds(const Program& program, std::vector<BoundedComponent>& out) {
   // dry is a product of factors in [0, 1]: its slope is at most the sum of theirs, its curvature at most sum + (sum of
   // slopes)^2.
-  BoundedComponent patches{Part::Lava, kAlways, 0, 0, 0, 0};
+  BoundedComponent patches{Part::Lava, kAlways, kAlways, false, 0, 0, 0, 0};
   const double rise = program.lavaTop - program.lavaFloor;
   double drySlope = 0;
   for (std::size_t i = 0; i < program.patchCount; ++i) {
@@ -258,6 +258,18 @@ FeatureBounds layerBounds(const FeatureLayer& layer, double bodyRadius) noexcept
   return worst;
 }
 
+double BoundedComponent::missingShare(double minWavelength) const noexcept {
+  if (fades) return 1.0 - lunar::shownShare(wavelength, minWavelength);
+  return wavelength < minWavelength ? 1.0 : 0.0;
+}
+
+double BoundedComponent::shownShare(double minWavelength) const noexcept {
+  if (!fades) return wavelength < minWavelength ? 0.0 : 1.0;
+  // What the k-th landmark adds to a bound is no bound of its own: it counts in whole.
+  const double share = lunar::shownShare(longest, minWavelength);
+  return wavelength < longest || !(share > 0) ? share : 1.0;
+}
+
 LunarBounds::LunarBounds(const Program& program, std::span<const NoiseGroup> groups,
                          std::span<const FeatureLayer> layers, std::span<const Feature> landmarks)
     : radius_(program.radius), lavaBlend_(program.lavaBlend), clampBlend_(program.clampBlend) {
@@ -265,9 +277,10 @@ LunarBounds::LunarBounds(const Program& program, std::span<const NoiseGroup> gro
   for (const FeatureLayer& layer : layers) {
     const FeatureBounds b = layerBounds(layer, radius_);
     const Part part = layer.stage == FeatureStage::OldCrater ? Part::Relief : Part::Young;
-    components_.push_back({part, layer.wavelengthMeters(), b.low + 3 * b.outsideLow, b.high + 3 * b.outsideHigh,
-                           b.slope + 3 * b.outsideSlope, b.curvature + 3 * b.outsideCurvature, b.crestSlope,
-                           b.crestBlend, b.floorSlope, b.floorBlend});
+    components_.push_back({part, layer.wavelengthMeters(), layer.longestWavelengthMeters(), true,
+                           b.low + 3 * b.outsideLow, b.high + 3 * b.outsideHigh, b.slope + 3 * b.outsideSlope,
+                           b.curvature + 3 * b.outsideCurvature, b.crestSlope, b.crestBlend, b.floorSlope,
+                           b.floorBlend});
   }
   addLandmarkBounds(landmarks, components_);
   addBasinBounds(program, components_);
@@ -278,11 +291,11 @@ LunarBounds::LunarBounds(const Program& program, std::span<const NoiseGroup> gro
 }
 
 double LunarBounds::omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept {
+  if (minWavelengthMeters <= finestWavelengthMeters) return 0;
   std::array<double, 4> sums{};
   for (const BoundedComponent& c : components_) {
-    if (c.wavelength < minWavelengthMeters && c.wavelength >= finestWavelengthMeters) {
-      sums[static_cast<std::size_t>(c.part)] += c.omitted();
-    }
+    if (c.longest < finestWavelengthMeters) continue;
+    sums[static_cast<std::size_t>(c.part)] += c.missingShare(minWavelengthMeters) * c.omitted();
   }
   const double total = std::max(sums[0], sums[1]) + sums[2] + sums[3];
   // What float32 may differ from double, where the two levels differ in it; and the rounding of fine levels.
@@ -297,14 +310,15 @@ double LunarBounds::interpolationErrorMeters(double minWavelengthMeters, double 
   const double s = spacingMeters;
   std::array<double, 4> errors{}, slopes{};
   for (const BoundedComponent& c : components_) {
-    if (c.wavelength < minWavelengthMeters) continue;
+    const double shown = c.shownShare(minWavelengthMeters);
+    if (!(shown > 0)) continue;
     // Along the sphere the second derivative also has the slope times the path's own curvature, at most 2 / R with the
     // grid's warp.
     const double bend = c.curvature + c.slope * 4 / radius_;
     const auto part = static_cast<std::size_t>(c.part);
     const double kinks = 4 * jensenGap(c.crestSlope, s, c.crestBlend) + jensenGap(c.floorSlope, s, c.floorBlend);
-    errors[part] += std::min({0.25 * s * s * bend + kinks, 0.70711 * s * c.slope, c.high - c.low});
-    slopes[part] += c.slope;
+    errors[part] += shown * std::min({0.25 * s * s * bend + kinks, 0.70711 * s * c.slope, c.high - c.low});
+    slopes[part] += shown * c.slope;
   }
   const double flood = jensenGap(slopes[0] + slopes[1], s, lavaBlend_);
   const double clamp = jensenGap(std::max(slopes[0], slopes[1]) + slopes[2], s, clampBlend_);

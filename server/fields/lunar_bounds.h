@@ -47,10 +47,16 @@ enum class Part : std::uint8_t { Relief, Lava, Young, Regolith };
 
 struct BoundedComponent {
   Part part;
-  double wavelength;  ///< infinite for what every level shows
+  double wavelength;  ///< the shortest in it; infinite for what every level shows
+  double longest;     ///< the longest in it: levels between the two show some of its features
+  bool fades;         ///< features: shown in part (shownShare) by levels that just show them
   double low, high, slope, curvature;
   double crestSlope = 0, crestBlend = 1, floorSlope = 0, floorBlend = 1;
   double omitted() const noexcept { return -low > high ? -low : high; }
+  /// The most that a level leaves out of it, and the most that it shows of it, as shares of the bounds above. Landmarks
+  /// come by falling size and are bounded by tails, so their shares sum by parts (Abel).
+  double missingShare(double minWavelength) const noexcept;
+  double shownShare(double minWavelength) const noexcept;
 };
 
 class LunarBounds {

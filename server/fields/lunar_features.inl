@@ -23,17 +23,19 @@ struct Profile {
 template <class Real>
 struct Shape {
   Real apex, rise, floor, floorBlend, inverseFloorBlend, rim, rimBlend, inverseRimBlend, peak;
-  /// For slopes: the inverse half-widths of the edges, rounded at least to the footprint; and what it leaves of a
-  /// slope.
+  /// For slopes: the inverse half-widths of the edges, rounded at least to the footprint; and what it and the level
+  /// leave of a slope.
   Real inverseSoftFloor, inverseSoftRim, keptSlope;
+  Real shown;  ///< share of the height
 };
 
 template <class Real>
-Shape<Real> shapeOf(const Feature& f, double footprint) {
-  const double reach = footprint / f.radius;
+Shape<Real> shapeOf(const Feature& f, const Program& program) {
+  const double reach = program.footprint / f.radius;
   const double floorRise = f.floor - f.apex;  // the bowl meets the floor where rise s = floorRise
   const double floorSlope = 2.0 * __builtin_sqrt((floorRise > 0 ? floorRise : 0.0) * f.rise);
   const double rimSlope = 2.0 * f.rise + f.rim * (3.0 / (kApronRadii - 1.0));
+  const double shown = shownShare(f.radius, program.minWavelength);
   const double softFloor = floorSlope * reach, softRim = rimSlope * reach;
   return {Real(f.apex),
           Real(f.rise),
@@ -46,7 +48,8 @@ Shape<Real> shapeOf(const Feature& f, double footprint) {
           Real(f.peak),
           Real(1.0 / (softFloor > f.floorBlend ? softFloor : f.floorBlend)),
           Real(1.0 / (softRim > f.rimBlend ? softRim : f.rimBlend)),
-          Real(keptSlope(footprint, 0.5 / f.radius))};
+          Real(shown * keptSlope(program.footprint, 0.5 / f.radius)),
+          Real(shown)};
 }
 
 /// Bowl, flattened below by a floor, cut above by the apron of ejecta: roundedMin(roundedMax(bowl, floor), apron) +
@@ -83,7 +86,7 @@ TERRANE_INLINE Profile<Real> craterProfile(const Shape<Real>& p, Real s) {
   Real rSoft = one - size * p.inverseSoftRim;
   rSoft = rSoft > zero ? rSoft : zero;
   const Real innerWeight = difference < zero ? one - half * (rSoft * rSoft) : half * (rSoft * rSoft);
-  return {(difference < zero ? inner : apron) - p.rimBlend * sixth * (r * r * r),
+  return {((difference < zero ? inner : apron) - p.rimBlend * sixth * (r * r * r)) * p.shown,
           (innerWeight * innerSlope + (one - innerWeight) * apronSlope) * p.keptSlope};
 }
 
@@ -92,7 +95,7 @@ template <class Real>
 TERRANE_INLINE Profile<Real> rockProfile(const Shape<Real>& p, Real s) {
   const Real rest = Real(1) - s * s;
   const Real q = rest > Real(0) ? rest : Real(0);
-  return {p.peak * (q * q), p.peak * (Real(-4) * s) * q * p.keptSlope};
+  return {p.peak * (q * q) * p.shown, p.peak * (Real(-4) * s) * q * p.keptSlope};
 }
 
 /// The stage is a compile-time choice so that the compiler sees which arrays of the block are written, and vectorises.
@@ -108,7 +111,8 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
     lobeCos[k] = Real(f.lobeCos[k]);
     lobeSin[k] = Real(f.lobeSin[k]);
   }
-  const float brightness = f.brightness, inverseHalo = f.inverseHaloSquared, rays = f.rays;
+  const float brightness = f.brightness * static_cast<float>(shape.shown), inverseHalo = f.inverseHaloSquared,
+              rays = f.rays;
   for (std::size_t i = begin; i < begin + kChunk; ++i) {
     const Real dx = static_cast<Real>(b.x[i] - cx), dy = static_cast<Real>(b.y[i] - cy),
                dz = static_cast<Real>(b.z[i] - cz);
@@ -146,11 +150,11 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
 }
 
 template <class Real, FeatureStage Stage>
-void addFeatures(const FeatureRun& run, double footprint, Block& b) {
+void addFeatures(const FeatureRun& run, const Program& program, Block& b) {
   for (std::size_t k = 0; k < run.count; ++k) {
     const Feature& f = run.features[k];
-    if (!reaches(b, f.center, f.reach)) continue;
-    const Shape<Real> shape = shapeOf<Real>(f, footprint);
+    if (f.radius < program.minWavelength || !reaches(b, f.center, f.reach)) continue;
+    const Shape<Real> shape = shapeOf<Real>(f, program);
     for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
       const double* q = b.chunkCenter[chunk];
       const double dx = q[0] - f.center[0], dy = q[1] - f.center[1], dz = q[2] - f.center[2];
@@ -161,16 +165,16 @@ void addFeatures(const FeatureRun& run, double footprint, Block& b) {
   }
 }
 
-void addRun(const FeatureRun& run, double footprint, Block& b) {
+void addRun(const FeatureRun& run, const Program& program, Block& b) {
   switch (run.stage) {
     case FeatureStage::OldCrater:
-      return run.inDouble ? addFeatures<double, FeatureStage::OldCrater>(run, footprint, b)
-                          : addFeatures<float, FeatureStage::OldCrater>(run, footprint, b);
+      return run.inDouble ? addFeatures<double, FeatureStage::OldCrater>(run, program, b)
+                          : addFeatures<float, FeatureStage::OldCrater>(run, program, b);
     case FeatureStage::YoungCrater:
-      return run.inDouble ? addFeatures<double, FeatureStage::YoungCrater>(run, footprint, b)
-                          : addFeatures<float, FeatureStage::YoungCrater>(run, footprint, b);
+      return run.inDouble ? addFeatures<double, FeatureStage::YoungCrater>(run, program, b)
+                          : addFeatures<float, FeatureStage::YoungCrater>(run, program, b);
     case FeatureStage::Rock:
-      return addFeatures<float, FeatureStage::Rock>(run, footprint, b);
+      return addFeatures<float, FeatureStage::Rock>(run, program, b);
   }
 }
 

@@ -244,6 +244,7 @@ class LunarField::Evaluation {
         scratch_(*out.scratch),
         program_(field.base_) {
     program_.footprint = batch.footprintMeters;
+    program_.minWavelength = minWavelengthMeters;
     scratch_.groups.clear();
     for (NoiseGroup group : field.groups_) {
       while (group.count > 0 && group.octaves[group.count - 1].inverseWavelength * minWavelengthMeters > 1)
@@ -258,7 +259,7 @@ class LunarField::Evaluation {
     program_.reliefInDouble = minWavelengthMeters < kCoarseWavelength;
     double finest = radius();
     for (const FeatureLayer& layer : field.features_->layers) {
-      if (layer.wavelengthMeters() >= minWavelengthMeters) finest = layer.wavelengthMeters();
+      if (layer.longestWavelengthMeters() >= minWavelengthMeters) finest = layer.wavelengthMeters();
     }
     widestBall_ = kWidestBall * finest;
   }

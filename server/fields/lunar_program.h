@@ -84,6 +84,15 @@ struct Feature {
 inline constexpr double kApronRadii = 2.2;          ///< ejecta end here, in crater radii
 inline constexpr double kPeakRadiusSquared = 0.06;  ///< central peak, in crater radii squared
 
+/// How much of a feature of this radius a level shows whose shortest wavelength is minWavelength: nothing up to that
+/// radius, all of it from four times that on, so that what is new at a level is small beside what was there. (Always
+/// inlined: the vector builds emit no function.)
+[[gnu::always_inline]] inline double shownShare(double radius, double minWavelength) noexcept {
+  const double u = minWavelength / radius;
+  const double s = u >= 1.0 ? 0.0 : u <= 0.25 ? 1.0 : (1.0 - u) * (1.0 / 0.75);
+  return 0.5 * s * (1.0 + s);
+}
+
 enum class FeatureStage : std::uint8_t { OldCrater, YoungCrater, Rock };
 
 /// Features of one layer, in canonical order.
@@ -96,8 +105,9 @@ struct FeatureRun {
 
 struct Program {
   double radius;
-  double footprint;   ///< metres: gradients and reflectance are averaged over this far; 0 for none
-  NoiseGroup relief;  ///< two sums: relief and lava
+  double minWavelength;  ///< metres: features of smaller radii are left out, of somewhat larger ones shown in part
+  double footprint;      ///< metres: gradients and reflectance are averaged over this far; 0 for none
+  NoiseGroup relief;     ///< two sums: relief and lava
   bool reliefInDouble;
   const NoiseGroup* regolith;  ///< float32
   std::size_t regolithCount;
