@@ -11,6 +11,18 @@
 namespace terrane {
 namespace {
 
+/// A range that NaN is outside of (CLI::Range lets it pass).
+CLI::Validator secondsFrom(double least) {
+  constexpr double kMost = 86'400;
+  const std::string range = fmt::format("{} to {} seconds", least, kMost);
+  return {[=](std::string& text) {
+            double value = 0;
+            const bool isNumber = CLI::detail::lexical_cast(text, value);
+            return isNumber && value >= least && value <= kMost ? std::string() : text + " is not " + range;
+          },
+          range};
+}
+
 constexpr const char* kDescription =
     "Serves the terrain of whole planets: Draco glTF tiles computed on demand.\n"
     "Prints one line with its URL when it is ready; logs go to stderr. SIGTERM and SIGINT let what is\n"
@@ -73,26 +85,26 @@ void addOptions(CLI::App& app, ServerSettings& settings, RawOptions& raw) {
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--header-timeout", raw.headerTimeout, "Seconds for a request's header to arrive")
-      ->check(CLI::Range(0.001, 86400.0))
+      ->check(secondsFrom(0.001))
       ->type_name("S")
       ->capture_default_str();
   app.add_option("--idle-timeout", raw.idleTimeout, "Seconds that a connection may be silent between requests")
-      ->check(CLI::Range(0.001, 86400.0))
+      ->check(secondsFrom(0.001))
       ->type_name("S")
       ->capture_default_str();
   app.add_option("--write-timeout", raw.writeTimeout, "Seconds without a byte of a response being taken")
-      ->check(CLI::Range(0.001, 86400.0))
+      ->check(secondsFrom(0.001))
       ->type_name("S")
       ->capture_default_str();
   app.add_option("--response-timeout", raw.responseTimeout, "Seconds for a tile to be built; then 503")
-      ->check(CLI::Range(0.001, 86400.0))
+      ->check(secondsFrom(0.001))
       ->type_name("S")
       ->capture_default_str();
   app.add_option("--max-header", raw.maxHeader, "Bytes of a request's header, 1KiB to 1MiB; beyond that 431")
       ->type_name("SIZE")
       ->capture_default_str();
   app.add_option("--shutdown-grace", raw.shutdownGrace, "Seconds for what is under way when the server stops")
-      ->check(CLI::Range(0.0, 86400.0))
+      ->check(secondsFrom(0.0))
       ->type_name("S")
       ->capture_default_str();
   app.add_option("--log-level", settings.logLevel, "What goes to stderr: debug, info, warn, error or off")

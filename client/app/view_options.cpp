@@ -190,7 +190,7 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   }
   for (const auto& range :
        {checkRange("--fov", raw.fieldOfViewDegrees, 1, 150), checkRange("--error", o.errorPixels, 0.1, 100),
-        checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e9),
+        checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e6),
         checkRange("--step", o.stepSeconds, 1e-4, 1e6), checkRange("--time-limit", o.timeLimitSeconds, 0.1, 1e6),
         checkCapture(o)})
     if (!range) return range.error();

@@ -39,7 +39,6 @@ struct ViewSession::State {
   ViewOptions options;
   std::unique_ptr<TileStream> stream;
   std::unique_ptr<TileRenderer> renderer;
-  std::size_t bodyIndex = 0;
   Camera camera;
   ViewPose pose;
   TileSelection selection;
@@ -87,19 +86,16 @@ Result<bool> ViewSession::ready() {
     return makeError(ErrorKind::InvalidArgument, "--body",
                      fmt::format("the scene \"{}\" has no \"{}\": it has {}", scene->name, s.options.body, names));
   }
-  s.bodyIndex = s.options.body.empty() ? 0 : static_cast<std::size_t>(found - scene->bodies.begin());
   auto renderer = TileRenderer::create(scene->effects);
   if (!renderer) return renderer.error();
   s.renderer = std::move(*renderer);
-  s.stream->selectBody(s.bodyIndex);
+  s.stream->selectBody(s.options.body.empty() ? 0 : static_cast<std::size_t>(found - scene->bodies.begin()));
   drawSettings.placement = s.options.placement.value_or(s.renderer->selfTest().chosen);
   return true;
 }
 
 const SceneInfo& ViewSession::scene() const { return *state_->stream->scene(); }
-const BodyInfo& ViewSession::body() const {
-  return scene().bodies[std::min(state_->bodyIndex, scene().bodies.size() - 1)];
-}
+const BodyInfo& ViewSession::body() const { return *state_->stream->body(); }
 
 // Uploads what is decoded until the frame's share of bytes or time is used up.
 bool ViewSession::State::takeArrivals(const UploadBudget& budget) {
@@ -132,7 +128,7 @@ ViewPose ViewSession::State::resolved(const View& view) const {
 // The tiles under the camera, down to the level that its height calls for, whether it looks there or not: the ground's
 // height comes from them.
 std::vector<WantedTile> ViewSession::State::groundChain(double errorPixels) const {
-  const SelectionBody& body = stream->scene()->bodies[bodyIndex].selection;
+  const SelectionBody& body = stream->body()->selection;
   const glm::dvec3 direction = directionOf(pose.longitude, pose.latitude);
   const auto ground = stream->groundBelow(direction);
   const double height =

@@ -302,6 +302,8 @@ const SceneInfo* TileStream::scene() const {
 
 void TileStream::selectBody(std::size_t index) { state_->selectBody(state_->scenes.back()->bodies.at(index)); }
 
+const BodyInfo* TileStream::body() const noexcept { return state_->body; }
+
 void TileStream::want(const std::vector<WantedTile>& wanted) {
   state_->drain();
   if (!state_->body) return;

@@ -78,6 +78,9 @@ class TileStream {
   /// Chooses the body whose tiles are wanted. Another body than before: nothing is resident any more (clear the
   /// renderer). Precondition: scene() is not null, index in range.
   void selectBody(std::size_t index);
+  /// What is in force of the chosen body: a new scene's, wherever it stands in there, or the last one that had it. Null
+  /// before selectBody.
+  const BodyInfo* body() const noexcept;
 
   /// Once a frame: what is wanted now, coarsest first. Queued and running requests for anything else are cancelled.
   void want(const std::vector<WantedTile>& wanted);

@@ -32,12 +32,21 @@ class SkirtBuilder {
     for (const std::uint32_t anchor : tile_.topology.skirtAnchors) lowest_.push_back(tile_.heightMeters[anchor]);
     if (tile_.path.level() > 0) lowerToCoarserEdges();
     if (static_cast<std::size_t>(tile_.path.level()) + 1 < tile_.levels.size()) lowerToFinerEdges();
+    shareCorners();
     const double margin = skirtMarginMeters(tile_.radiusMeters, tile_.path.level());
     for (double& height : lowest_) height -= margin;
   }
 
  private:
   static constexpr std::size_t kEdges = 4;
+
+  /// Two edges' skirts end in one point below a corner.
+  void shareCorners() {
+    for (std::size_t edge = 0; edge < kEdges; ++edge) {
+      double &end = lowest(edge, cells_), &start = lowest((edge + 1) % kEdges, 0);
+      end = start = std::min(end, start);
+    }
+  }
 
   double& lowest(std::size_t edge, std::size_t k) { return lowest_[edge * (cells_ + 1) + k]; }
 

@@ -72,6 +72,18 @@ std::array<glm::dvec3, kEdgeCount> outwardNormals(const FacePath& path) {
           normal(axes.v, tangent(path.row() + 1), 1.0), normal(axes.u, tangent(path.column()), -1.0)};
 }
 
+/// How far skirt vertex k of an edge leans outwards, in units of the flare: along the edge's normal, or at the ends
+/// along the mitre with the next edge's.
+glm::dvec3 leanOf(const std::array<glm::dvec3, kEdgeCount>& outward, std::size_t edge, std::size_t k,
+                  std::size_t cells) {
+  if (k != 0 && k != cells) return outward[edge];
+  const glm::dvec3& other = outward[(edge + (k == 0 ? kEdgeCount - 1 : 1)) % kEdgeCount];
+  // In this order for both edges, so that they round alike.
+  const glm::dvec3 &first = k == 0 ? other : outward[edge], &second = k == 0 ? outward[edge] : other;
+  const double cosine = (first.x * second.x + first.y * second.y) + first.z * second.z;
+  return (first + second) * (1.0 / (1.0 + cosine));
+}
+
 /// Where the grid's vertices and the skirts below them fall on the lattice. Skirts lean outwards (kSkirtFlareSteps).
 void placeVertices(const FacePath& path, const BuildScratch& memory, const TileTopology& topology, double radiusMeters,
                    int exponent, std::vector<LatticePoint>& out) {
@@ -89,7 +101,7 @@ void placeVertices(const FacePath& path, const BuildScratch& memory, const TileT
   const auto perEdge = static_cast<std::size_t>(topology.cellsPerEdge) + 1;
   for (std::size_t k = 0; k < topology.skirtAnchors.size(); ++k) {
     const glm::dvec3 below = position(topology.skirtAnchors[k], memory.skirtHeights[k]);
-    out.push_back(roundToLattice(below + outward[k / perEdge] * flare, exponent));
+    out.push_back(roundToLattice(below + leanOf(outward, k / perEdge, k % perEdge, perEdge - 1) * flare, exponent));
   }
 }
 

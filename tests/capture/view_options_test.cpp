@@ -120,6 +120,7 @@ TEST(ViewOptions, WhatIsWrongIsNamedByItsFlag) {
       {{"--frame-budget", "-1"}, "--frame-budget"},
       {{"--placement", "float64"}, "--placement"},
       {{"--frames", "-3"}, "--frames"},
+      {{"--frames", "1000000000"}, "--frames"},
       {{"--frames", "1.5"}, "--frames"},
       {{"--step", "0"}, "--step"},
       {{"--time-limit", "0"}, "--time-limit"},

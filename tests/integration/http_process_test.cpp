@@ -130,6 +130,8 @@ TEST(ServerProgram, EveryWrongFlagIsOneLineThatNamesItAndExitsWithTwo) {
       {{"--scene", "smooth", "--simd", "v9"}, "--simd"},
       {{"--scene", "smooth", "--max-header", "1"}, "--max-header"},
       {{"--scene", "smooth", "--header-timeout", "0"}, "--header-timeout"},
+      {{"--scene", "smooth", "--write-timeout", "nan"}, "--write-timeout"},
+      {{"--scene", "smooth", "--shutdown-grace", "inf"}, "--shutdown-grace"},
       {{"--scene", "smooth", "--log-level", "loud"}, "--log-level"},
       {{"--config", "/nonexistent.toml"}, "/nonexistent.toml"},
   };

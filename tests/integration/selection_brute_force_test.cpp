@@ -1,6 +1,7 @@
 // Tile selection against brute force: what random cameras really see of the lunar terrain, vertex by vertex, with the
-// lowest terrain as the only occluder. A tile that selection culls must have no visible vertex; a tile that it asks for
-// should be in view. TERRANE_SELECTION_CAMERAS sets the number of cameras, TERRANE_SEED the seed.
+// lowest terrain as the only occluder. Where selection culls a tile, what would be drawn there must have no visible
+// vertex; a tile that it asks for should be in view. TERRANE_SELECTION_CAMERAS sets the number of cameras, TERRANE_SEED
+// the seed.
 
 #include <gtest/gtest.h>
 
@@ -20,6 +21,7 @@
 #include "common/tiling/lattice.h"
 #include "common/view/frustum.h"
 #include "common/view/horizon.h"
+#include "common/view/level_of_detail.h"
 #include "common/view/tile_selection.h"
 #include "proto/resident_tile.h"
 #include "server/build/tile_builder.h"
@@ -209,6 +211,21 @@ std::vector<FacePath> culledTiles(const std::vector<WantedTile>& wanted) {
   return culled;
 }
 
+/// Is a vertex in view of what would be drawn over a tile's footprint: its own mesh, or where its error is too large,
+/// its children's? (A coarse mesh may stand out of the ground that is shown in its place.)
+bool seesWhatIsDrawn(const FacePath& path, const Camera& camera, const Sight& sight, GroundCache& ground) {
+  if (!sight.seesVertex(ground[path])) return false;
+  const SelectionBody& body = terrain().body();
+  const OrientedBox box =
+      tileBounds(path, body.radiusMeters, *ground[path].resident.ownHeights, body.occluderRadiusMeters).box;
+  const double error = body.geometricErrorMeters[static_cast<std::size_t>(path.level())];
+  if (path.level() == body.maxLevel || screenSpaceErrorPixels(error, box, camera) <= SelectionSettings{}.errorPixels)
+    return true;
+  for (int digit = 0; digit < 4; ++digit)
+    if (seesWhatIsDrawn(path.child(digit), camera, sight, ground)) return true;
+  return false;
+}
+
 Count judge(const Camera& camera, GroundCache& ground) {
   // Resident is what was asked for, as in a viewer: of all other tiles only their ancestors' word is known.
   std::unordered_set<FacePath> residents;
@@ -238,7 +255,7 @@ Count judge(const Camera& camera, GroundCache& ground) {
   }
   for (const FacePath& path : culledTiles(selection.wanted)) {
     ++count.culled;
-    if (!sight.seesVertex(ground[path])) continue;
+    if (!seesWhatIsDrawn(path, camera, sight, ground)) continue;
     ++count.omitted;
     const ViewPose pose = poseFromCamera(camera);
     ADD_FAILURE() << path.text() << " omitted at " << pose.longitude << ' ' << pose.latitude << ' '

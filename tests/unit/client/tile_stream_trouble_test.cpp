@@ -190,6 +190,25 @@ TEST(TileStreamTrouble, AGoneRevisionMovesOverWithoutAHole) {
   EXPECT_THAT(viewer.stream().status().message, IsEmpty());
 }
 
+TEST(TileStreamTrouble, ABodyIsFollowedByNameWhereverANewSceneListsIt) {
+  RunningWorld world;
+  SmallViewer viewer(quickOptions(world.url()));
+  ASSERT_TRUE(viewer.waitForScene());
+  ASSERT_TRUE(viewer.settle(chain(path("cube/0/01"))));
+  const std::string name = viewer.stream().body()->name;
+  SceneInfo next = smallScene(kNextRevision);
+  ASSERT_GE(next.bodies.size(), 2u);
+  std::reverse(next.bodies.begin(), next.bodies.end());
+  world.setRule([text = writeSceneJson(next)](const std::string& target, const FakeReply& usual) {
+    return target.ends_with("scene.json") ? FakeReply{.body = text} : usual;
+  });
+  world.setRevision(kNextRevision);
+  ASSERT_TRUE(viewer.settle(chain(path("cube/0/03"))));
+  EXPECT_EQ(viewer.stream().body()->name, name);
+  EXPECT_EQ(viewer.stream().body()->revision, kNextRevision);
+  EXPECT_NE(viewer.stream().scene()->bodies[0].name, name);
+}
+
 TEST(TileStreamTrouble, AnOldSceneFromACacheOnTheWayIsAskedForAgainAndAgain) {
   RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));

@@ -137,7 +137,7 @@ TEST(TileBounds, EveryBuildComputesTheSameBits) {
     mix(bounds.horizonPoint);
     mix(glm::dvec3(bounds.sphere.radiusMeters, lowestSurfaceRadiusMeters(1737400.0, -9000.0, 64), 0));
   }
-  EXPECT_EQ(hash, 3137277706745409617u);
+  EXPECT_EQ(hash, 2332395005052215904u);
 }
 
 TEST(TileBounds, HeightsThatReachTheBodysCentreAreStillBounded) {

@@ -115,13 +115,24 @@ TEST(TileBuilder, HangsSkirtsTowardsTheCentreLeaningALittleOutwards) {
     const glm::dvec3 lean = glm::normalize(bottom) - glm::normalize(edge);
     const glm::dvec3 fromMiddle = glm::normalize(edge) - glm::normalize(position(tile, kSide * kSide / 2));
     EXPECT_GT(glm::dot(lean, fromMiddle), 0.0) << "skirt vertex " << k;
-    EXPECT_LE(glm::length(lean), (kSkirtFlareSteps + 1.7321) * step / (kMoon + tile.metadata.heights.minMeters));
+    const double flare = k % kSide == 0 || k % kSide == 64 ? kSkirtCornerFlareSteps : kSkirtFlareSteps;
+    EXPECT_LE(glm::length(lean), (flare + 1.7321) * step / (kMoon + tile.metadata.heights.minMeters));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_EQ(tile.mesh.normals[3 * anchor + axis], tile.mesh.normals[3 * vertex + axis]);
       EXPECT_EQ(tile.mesh.colors[3 * anchor + axis], tile.mesh.colors[3 * vertex + axis]);
     }
   }
   EXPECT_NEAR(deepest, static_cast<double>(tile.metadata.skirtMeters), 2 * step);
+}
+
+TEST(TileBuilder, LeavesNoWedgeBetweenTheSkirtsOfTwoEdges) {
+  for (const char* text : {"cube/0", "cube/3/0", "cube/1/2103", "cube/4/333333", "cube/2/0123012301230123"}) {
+    const Tile tile = mesh(moon(), *FacePath::parse(text));
+    for (std::size_t edge = 0; edge < 4; ++edge) {
+      const std::size_t end = kSide * kSide + edge * kSide + 64, start = kSide * kSide + (edge + 1) % 4 * kSide;
+      EXPECT_EQ(position(tile, end), position(tile, start)) << text << " after edge " << edge;
+    }
+  }
 }
 
 TEST(TileBuilder, FitsEveryTileIntoSixteenBits) {
