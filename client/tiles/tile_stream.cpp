@@ -252,7 +252,7 @@ struct TileStream::State {
     if (link == LinkState::Slow) return fetch->origin() + " is slow: waiting for " + inSeconds(net.longestRunning);
     if (net.retryIn.count() > 0) return fetch->origin() + " is busy: retry in " + inSeconds(net.retryIn);
     if (scenes.empty() || sceneStale) {
-      if (const std::string trouble = loader->trouble(); !trouble.empty()) return trouble;
+      if (std::string trouble = loader->trouble(); !trouble.empty()) return trouble;
     }
     if (sceneStale) return "the server has a new version of this body: moving over";
     if (bodyMissing) return "the server no longer has the body " + body->name;

@@ -84,7 +84,7 @@ class FacePath {
   /// meet: there the diagonal neighbour does not exist and the answer is empty. At level 0 only edge neighbours exist.
   std::optional<FacePath> neighbour(Side side) const noexcept;
 
-  constexpr auto operator<=>(const FacePath&) const noexcept = default;
+  constexpr auto operator<=>(const FacePath&) const noexcept = default;  // NOLINT(modernize-use-nullptr): clang 14
 
  private:
   constexpr FacePath(Scheme scheme, std::uint8_t face, std::uint8_t level, std::uint64_t digits) noexcept

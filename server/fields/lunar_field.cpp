@@ -136,7 +136,7 @@ void LunarField::makeNoise() {
   const auto add = [&](int exponent, double amplitude, double lava) {
     NoiseOctave octave{};
     octave.inverseWavelength = std::ldexp(1.0, -exponent);
-    const std::uint64_t h = mixHash(seed_ ^ mixHash(static_cast<std::uint64_t>(exponent + 64)));
+    const std::uint64_t h = mixHash(seed_ ^ mixHash(static_cast<std::uint64_t>(exponent) + 64));
     for (int a = 0; a < 3; ++a)
       octave.offset[a] = hashUnit(mixHash(h ^ static_cast<std::uint64_t>(a + 1))) * 1000 - 0.5;
     octave.seed = static_cast<std::uint32_t>(h);

@@ -16,7 +16,7 @@ class WorkerPool {
   struct JobId {
     int negatedPriority = 0;
     std::uint64_t sequence = 0;
-    auto operator<=>(const JobId&) const = default;
+    auto operator<=>(const JobId&) const = default;  // NOLINT(modernize-use-nullptr): clang 14
   };
 
   /// At least one thread.
