@@ -2,13 +2,16 @@
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "client/controls/camera_controls.h"
 #include "common/tiling/cube_sphere.h"
@@ -22,6 +25,13 @@ using Clock = std::chrono::steady_clock;
 // Small enough that one batch does not overrun a frame's time by much.
 constexpr std::size_t kUploadBatchBytes = 512u << 10;
 constexpr int kLevelsAheadOfGround = 2;
+
+/// Decoding many tiles leaves tens of megabytes free in the heap; nobody needs them while the view stands still.
+void returnFreedMemory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
 
 std::uint32_t gridIndex(double coordinate, int level) {
   const double cells = static_cast<double>(std::uint64_t{1} << level);
@@ -44,7 +54,7 @@ struct ViewSession::State {
   TileSelection selection;
   std::vector<FacePath> drawn;
   std::size_t missing = 0, wantedCount = 0;
-  bool firstUpdate = true;
+  bool firstUpdate = true, wasSettled = false;
   std::unordered_map<FacePath, TilePtr> kept;  ///< only to explain: otherwise a mesh is dropped once it is on the GPU
 
   bool takeArrivals(const UploadBudget& budget);
@@ -62,6 +72,7 @@ Result<std::unique_ptr<ViewSession>> ViewSession::open(const ViewOptions& option
   streamOptions.residentBudgetBytes = options.memoryBudgetBytes;
   streamOptions.cacheFile = options.cacheFile;
   streamOptions.cacheBudgetBytes = options.cacheBudgetBytes;
+  streamOptions.decodeThreads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 4u));
   auto stream = TileStream::open(std::move(streamOptions), std::move(wake));
   if (!stream) return stream.error();
   auto state = std::make_unique<State>();
@@ -197,6 +208,8 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
     const bool still = !view.aboveGround || pose.altitudeMeters == altitudeBefore;
     const bool idle = s.stream->idle();
     report.settled = s.selection.complete && groundKnown && still && !arrived && s.missing == 0 && idle;
+    if (report.settled && !std::exchange(s.wasSettled, true)) returnFreedMemory();
+    s.wasSettled = report.settled;
     report.stuck = !arrived && s.missing > 0 && idle && s.stream->status().failed > 0;
   }
   for (const FacePath& path : s.stream->evict(s.drawn)) s.renderer->remove(path);
