@@ -1,13 +1,15 @@
 #pragma once
 // The Moon as a height field. Body frame, metres; immutable and thread-safe. In order of age:
-//   relief   broad noise, the great basins (lunar_landmarks.h), and the old craters of the highlands; on top of each
-//   other lava     stands in the basins at its own nearly level height: surface = roundedMax(relief, lava), so that
-//   coasts, bays, islands
-//            and half-drowned craters come out by themselves; where lava wins, the ground is dark and smooth
-//   young    craters of all sizes since then (feature_layers.h), down to decimetres, and rocks and stones; the sum is
-//   clamped to the
-//            stated range by a C2 curve that leaves the middle as it is
-//   regolith fractal noise whose slopes grow slowly towards small scales, rougher in some places than in others
+// relief: broad noise, the great basins (lunar_landmarks.h), and the old craters of the highlands, on top of each other.
+// lava: stands in the basins at its own nearly level height, surface = roundedMax(relief, lava), so that coasts, bays,
+// islands and half-drowned craters come out by themselves; where lava wins, the ground is dark and smooth.
+// young: craters of all sizes since then (feature_layers.h), down to decimetres, and rocks and stones; the sum is
+// clamped to the stated range by a C2 curve that leaves the middle as it is.
+// regolith: fractal noise whose slopes grow slowly towards small scales, rougher in some places than in others.
+//
+// Noise is shown from a wavelength of two cells on; craters and rocks from a radius of two cells on, first in part
+// (shownShare, lunar_program.h), so that none is cut where levels meet.
+//
 // Noise below 8 km, craters below 1 km and rocks are computed in float32 relative to their cell or centre, the rest in
 // double (at levels with cells under 2 m): no rounding step above some hundredths of a millimetre there. Every SIMD
 // path, batch and thread gives the same bits.
