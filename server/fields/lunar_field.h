@@ -1,10 +1,15 @@
 #pragma once
-// The Moon as a height field. Body frame, metres; immutable and thread-safe. In order of age:
-// relief: broad noise, the great basins (lunar_landmarks.h), and the old craters of the highlands, on top of each other.
+// The Moon as a height field. Body frame, metres; immutable and thread-safe. In order of age.
+//
+// relief: broad noise, the great basins (lunar_landmarks.h), and the old craters of the highlands, on top of each
+// other.
+//
 // lava: stands in the basins at its own nearly level height, surface = roundedMax(relief, lava), so that coasts, bays,
 // islands and half-drowned craters come out by themselves; where lava wins, the ground is dark and smooth.
+//
 // young: craters of all sizes since then (feature_layers.h), down to decimetres, and rocks and stones; the sum is
 // clamped to the stated range by a C2 curve that leaves the middle as it is.
+//
 // regolith: fractal noise whose slopes grow slowly towards small scales, rougher in some places than in others.
 //
 // Noise is shown from a wavelength of two cells on; craters and rocks from a radius of two cells on, first in part
