@@ -9,6 +9,7 @@
 
 #include "common/numerics/strict_math.h"
 #include "common/tiling/cube_sphere.h"
+#include "proto/draco_template.h"
 #include "proto/gltf_tile.h"
 #include "server/build/grid_directions.h"
 #include "server/build/level_accuracy.h"
@@ -168,6 +169,7 @@ struct TileBuilder::State {
   HeightRange fieldHeights;
   std::vector<LevelAccuracy> levels;
   std::shared_ptr<const TileTopology> topology;
+  std::shared_ptr<const DracoTemplate> draco;  ///< of all its tiles; null where libdraco must do it alone
   mutable ScratchPool scratch;
 
   Result<Tile> buildMesh(const FacePath& path, BuildScratch& scratchMemory, BuildTimes& times) const;
@@ -197,6 +199,9 @@ TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(s
                        state.fieldHeights.maxMeters};
   selection.occluderRadiusMeters = lowestSurfaceRadiusMeters(radius, state.fieldHeights.minMeters, wire.cellsPerEdge);
   for (const LevelAccuracy& level : state.levels) selection.geometricErrorMeters.push_back(level.geometricErrorMeters);
+
+  if (const Result<Tile> model = buildMesh(FacePath::wholeFace(Scheme::Cube, 0)); model.has_value())
+    state.draco = DracoTemplate::learn(model->mesh, wire.draco);
 
   const Result<BuiltTile> probe = build(FacePath::wholeFace(Scheme::Cube, 0));
   state.info.revision =
@@ -299,7 +304,8 @@ Result<BuiltTile> TileBuilder::build(const FacePath& path) const {
   const Result<Tile> tile = buildMesh(path, &built.times);
   if (tile.has_error()) return tile.error();
   const auto dracoStart = Clock::now();
-  const Result<DracoBuffer> draco = encodeDraco(tile->mesh, state_->wire.draco);
+  const Result<DracoBuffer> draco =
+      state_->draco ? state_->draco->encode(tile->mesh) : encodeDraco(tile->mesh, state_->wire.draco);
   if (draco.has_error()) return draco.error();
   built.times.dracoMs = millisecondsSince(dracoStart);
   const auto glbStart = Clock::now();

@@ -1,0 +1,134 @@
+// The learnt encoder against libdraco's own, byte for byte.
+
+#include "proto/draco_template.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "tests/unit/proto/sample_tile.h"
+
+namespace terrane::test {
+namespace {
+
+constexpr unsigned kSeed = 11;
+
+TileMesh sampleMesh(int cells, bool skirts = true, bool colors = true) {
+  return sampleTile({.cellsPerEdge = cells, .skirts = skirts, .colors = colors}).mesh;
+}
+
+/// Kinds of data that make an entropy coder choose differently, and the ends of all ranges.
+std::vector<std::pair<std::string, TileMesh>> kindsOfData(const TileMesh& model) {
+  std::mt19937 random(kSeed);
+  std::vector<std::pair<std::string, TileMesh>> kinds{{"as sampled", model}};
+  const auto add = [&](std::string name, auto&& offset, auto&& color, auto&& normal) {
+    TileMesh mesh = model;
+    for (std::size_t i = 0; i < mesh.offsets.size(); ++i) mesh.offsets[i] = static_cast<std::uint16_t>(offset(i));
+    for (std::size_t i = 0; i < mesh.colors.size(); ++i) mesh.colors[i] = static_cast<std::uint8_t>(color(i));
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) mesh.normals[i] = static_cast<float>(normal(i));
+    kinds.emplace_back(std::move(name), std::move(mesh));
+  };
+  const auto drawn = [&](std::size_t) { return random() >> 8; };
+  const auto sign = [&](std::size_t) { return random() % 2 == 0 ? 1 : -1; };
+  const auto one = [](std::size_t) { return 1; };
+  add(
+      "all equal", [](std::size_t) { return 4711; }, [](std::size_t) { return 96; }, one);
+  add("noise", drawn, drawn, [&](std::size_t) { return std::ldexp(random(), -32) - 0.4999; });
+  add(
+      "only the ends of the range", [&](std::size_t) { return random() % 2 * 65535; },
+      [&](std::size_t) { return random() % 2 * 255; }, sign);
+  add(
+      "one spike", [](std::size_t i) { return i == 30 ? 65535 : 0; }, [](std::size_t i) { return i == 8 ? 255 : 0; },
+      [](std::size_t i) { return i % 3 == 2 ? -1.0 : 0.0; });
+  add(
+      "a ramp", [](std::size_t i) { return i; }, [](std::size_t i) { return i / 64; },
+      [](std::size_t i) { return i % 3 == 0 ? 1.0 : std::sin(0.01 * static_cast<double>(i)); });
+  add(
+      "small steps", [&](std::size_t i) { return 30000 + i / 3 + random() % 3; },
+      [&](std::size_t) { return 96 + random() % 2; },
+      [&](std::size_t i) { return i % 3 == 1 ? 1.0 : 0.02 * std::ldexp(random(), -32); });
+  return kinds;
+}
+
+TEST(DracoTemplate, GivesTheBytesOfLibdraco) {
+  RecordProperty("seed", kSeed);
+  for (const int cells : {1, 2, 8, 64, 128})
+    for (const bool skirts : {false, true})
+      for (const bool colors : {false, true}) {
+        const TileMesh model = sampleMesh(cells, skirts, colors);
+        const auto learnt = DracoTemplate::learn(model, {});
+        ASSERT_NE(learnt, nullptr) << cells << " cells";
+        for (const auto& [name, mesh] : kindsOfData(model)) {
+          const auto expected = encodeDraco(mesh, {}), actual = learnt->encode(mesh);
+          ASSERT_TRUE(expected.has_value() && actual.has_value()) << name;
+          EXPECT_TRUE(actual->bytes == expected->bytes) << name << ", " << cells << " cells, seed " << kSeed;
+          EXPECT_EQ(actual->vertexCount, expected->vertexCount);
+          EXPECT_EQ(actual->triangleCount, expected->triangleCount);
+          EXPECT_EQ(actual->colorId, expected->colorId);
+          EXPECT_EQ(actual->gridId, expected->gridId);
+        }
+      }
+}
+
+TEST(DracoTemplate, GivesTheBytesOfLibdracoInEverySettingItTakes) {
+  const TileMesh model = sampleMesh(16);
+  for (int speed = 0; speed <= 10; ++speed) {
+    for (const int bits : {2, 7, 8, 10, 16}) {
+      const DracoSettings settings{.speed = speed, .normalBits = bits};
+      const auto learnt = DracoTemplate::learn(model, settings);
+      EXPECT_EQ(learnt != nullptr, speed >= 4 && speed <= 7) << "speed " << speed << ", " << bits << " bits";
+      if (!learnt) continue;
+      for (const auto& [name, mesh] : kindsOfData(model))
+        EXPECT_TRUE(learnt->encode(mesh)->bytes == encodeDraco(mesh, settings)->bytes)
+            << name << ", speed " << speed << ", " << bits << " bits, seed " << kSeed;
+    }
+  }
+}
+
+TEST(DracoTemplate, LeavesAMeshOfAnotherKindToLibdraco) {
+  const auto learnt = DracoTemplate::learn(sampleMesh(8), {});
+  ASSERT_NE(learnt, nullptr);
+  TileMesh turned = sampleMesh(8);
+  std::rotate(turned.triangles.begin(), turned.triangles.begin() + 3, turned.triangles.end());
+  TileMesh renumbered = sampleMesh(8);
+  std::swap(renumbered.gridIndices.front(), renumbered.gridIndices.back());
+  for (const TileMesh& other : {sampleMesh(4), sampleMesh(8, false), sampleMesh(8, true, false), turned, renumbered}) {
+    EXPECT_FALSE(learnt->fits(other));
+    EXPECT_TRUE(learnt->encode(other)->bytes == encodeDraco(other, {})->bytes);
+  }
+  EXPECT_TRUE(learnt->fits(sampleMesh(8)));
+}
+
+TEST(DracoTemplate, RefusesWhatLibdracosEncoderRefuses) {
+  TileMesh mesh = sampleMesh(8);
+  const auto learnt = DracoTemplate::learn(mesh, {});
+  ASSERT_NE(learnt, nullptr);
+  for (const float bad : {0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    TileMesh broken = mesh;
+    for (std::size_t c = 0; c < 3; ++c) broken.normals[3 * 7 + c] = bad;
+    EXPECT_EQ(learnt->encode(broken).error().field, "normals") << bad;
+  }
+  TileMesh shortened = mesh;
+  shortened.offsets.pop_back();
+  EXPECT_EQ(learnt->encode(shortened).error().field, "offsets");
+  TileMesh fewColors = mesh;
+  fewColors.colors.pop_back();
+  EXPECT_EQ(learnt->encode(fewColors).error().field, "colors");
+
+  TileMesh loose = mesh;  // a vertex without triangle
+  loose.gridIndices.push_back(0);
+  for (int i = 0; i < 3; ++i) {
+    loose.offsets.push_back(0);
+    loose.normals.push_back(1.0f);
+    loose.colors.push_back(0);
+  }
+  EXPECT_EQ(DracoTemplate::learn(loose, {}), nullptr);
+  EXPECT_EQ(DracoTemplate::learn(TileMesh{}, {}), nullptr);
+  EXPECT_EQ(DracoTemplate::learn(mesh, {.speed = 7, .normalBits = 0}), nullptr);
+}
+
+}  // namespace
+}  // namespace terrane::test
