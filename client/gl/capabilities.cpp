@@ -2,12 +2,21 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 namespace terrane::gl {
 namespace {
 
 std::string glText(GLenum name) {
   const auto* text = reinterpret_cast<const char*>(glGetString(name));
   return text != nullptr ? text : "";
+}
+
+bool isSoftwareRenderer(std::string_view renderer) {
+  constexpr std::array<std::string_view, 4> kNames{"llvmpipe", "softpipe", "swrast", "SwiftShader"};
+  return std::ranges::any_of(kNames, [&](std::string_view name) { return renderer.find(name) != renderer.npos; });
 }
 
 const char* errorName(GLenum error) {
@@ -33,6 +42,7 @@ Capabilities detectCapabilities(bool forceBaseline) {
   Capabilities found;
   found.renderer = glText(GL_RENDERER);
   found.versionText = glText(GL_VERSION);
+  found.rendersOnCpu = isSoftwareRenderer(found.renderer);
   if (forceBaseline) return found;
   found.version = epoxy_gl_version();
   found.shadingLanguage = found.version >= 45 ? 450 : found.version >= 40 ? 400 : 330;

@@ -11,6 +11,7 @@ struct Capabilities {
   bool clipControl = false;   ///< depth 0..1, for reversed depth without loss
   bool precise = false;  ///< the shading language has the qualifier that forbids rewriting floating-point expressions
   bool preciseByExtension = false;
+  bool rendersOnCpu = false;  ///< software GL: what it holds back of a frame is the program's own memory
   std::string renderer, versionText;
 };
 

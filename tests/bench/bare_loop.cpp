@@ -118,9 +118,11 @@ void BareLoop::draw() const {
   glClearDepth(0.0);
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  int drawn = 0;
   for (const Mesh& mesh : meshes_) {
     glBindVertexArray(mesh.vertexArray);
     glDrawElements(GL_TRIANGLES, mesh.indexCount, GL_UNSIGNED_SHORT, nullptr);
+    if (++drawn % 16 == 0) glFlush();  // as the viewer does on software GL
   }
   glBindVertexArray(0);
 }
