@@ -97,6 +97,13 @@ void randomLobes(Feature& f, std::uint64_t hash, double bound) noexcept {
   }
 }
 
+/// The outline's least distance from the centre, in radii.
+double narrowest(const Feature& f) noexcept {
+  double lobes = 0;
+  for (int k = 0; k < kLobes; ++k) lobes += std::sqrt(f.lobeCos[k] * f.lobeCos[k] + f.lobeSin[k] * f.lobeSin[k]);
+  return 1 - lobes;
+}
+
 Feature makeRock(const double direction[3], double bodyRadius, double diameter, std::uint64_t hash) noexcept {
   Feature f{};
   const double norm =
@@ -106,7 +113,7 @@ Feature makeRock(const double direction[3], double bodyRadius, double diameter, 
   tangentFrame(n, hash, f.axis1, f.axis2);
   randomLobes(f, hash, kRockLobes);
   f.radius = 0.5 * diameter;
-  f.reach = f.heightReach = f.radius / (1 - kRockLobes) * (1 + 1e-5);
+  f.reach = f.heightReach = f.radius / narrowest(f) * (1 + 1e-5);
   f.floorBlend = f.rimBlend = 1;
   f.peak = f.radius * (0.35 + (kRockHeight - 0.35) * hashUnit(mixHash(hash ^ 5)));
   f.brightness = static_cast<float>(0.01 + 0.035 * hashUnit(mixHash(hash ^ 6)));
@@ -256,7 +263,7 @@ Feature makeCrater(const double direction[3], double bodyRadius, double diameter
   f.rimBlend = f.rim * (0.7 + 4.5 * wear);
   const bool peaked = diameter > 20000 && diameter < 200000 && wear < 0.6;
   f.peak = peaked ? fresh.peak * (1 - wear) : 0;
-  f.heightReach = kApronRadii * f.radius / (1 - kCraterLobes) * (1 + 1e-5);
+  f.heightReach = kApronRadii * f.radius / narrowest(f) * (1 + 1e-5);
   f.reach = f.heightReach;
   f.inverseHaloSquared = 1.0f;
   return f;

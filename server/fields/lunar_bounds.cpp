@@ -76,6 +76,7 @@ FeatureBounds craterBounds(const Feature& f) noexcept {
 }
 
 FeatureBounds rockBounds(const Feature& f) noexcept {
+  // Of the rock's own shape; the dome's slope (1.54) and curvature (2 and 8 in place of 1.54 and 32) are below it.
   const OutlineBounds outline = outlineBounds(kRockLobes);
   FeatureBounds b;
   b.high = f.peak;
@@ -259,7 +260,10 @@ FeatureBounds layerBounds(const FeatureLayer& layer, double bodyRadius) noexcept
 }
 
 double BoundedComponent::missingShare(double minWavelength) const noexcept {
-  if (fades) return 1.0 - lunar::shownShare(wavelength, minWavelength);
+  if (fades) {
+    const double shown = lunar::shownShare(wavelength, minWavelength);
+    return 1.0 - shown * (1.0 - domeGap * (1.0 - rockSteepness(wavelength, minWavelength)));
+  }
   return wavelength < minWavelength ? 1.0 : 0.0;
 }
 
@@ -279,8 +283,8 @@ LunarBounds::LunarBounds(const Program& program, std::span<const NoiseGroup> gro
     const Part part = layer.stage == FeatureStage::OldCrater ? Part::Relief : Part::Young;
     components_.push_back({part, layer.wavelengthMeters(), layer.longestWavelengthMeters(), true,
                            b.low + 3 * b.outsideLow, b.high + 3 * b.outsideHigh, b.slope + 3 * b.outsideSlope,
-                           b.curvature + 3 * b.outsideCurvature, b.crestSlope, b.crestBlend, b.floorSlope,
-                           b.floorBlend});
+                           b.curvature + 3 * b.outsideCurvature, b.crestSlope, b.crestBlend, b.floorSlope, b.floorBlend,
+                           layer.stage == FeatureStage::Rock ? kDomeGap : 0.0});
   }
   addLandmarkBounds(landmarks, components_);
   addBasinBounds(program, components_);

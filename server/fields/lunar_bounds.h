@@ -52,6 +52,7 @@ struct BoundedComponent {
   bool fades;         ///< features: shown in part (shownShare) by levels that just show them
   double low, high, slope, curvature;
   double crestSlope = 0, crestBlend = 1, floorSlope = 0, floorBlend = 1;
+  double domeGap = 0;  ///< rocks: how much of their height their shape still lacks at levels that show domes
   double omitted() const noexcept { return -low > high ? -low : high; }
   /// The most that a level leaves out of it, and the most that it shows of it, as shares of the bounds above. Landmarks
   /// come by falling size and are bounded by tails, so their shares sum by parts (Abel).

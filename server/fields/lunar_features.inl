@@ -26,7 +26,8 @@ struct Shape {
   /// For slopes: the inverse half-widths of the edges, rounded at least to the footprint; and what it and the level
   /// leave of a slope.
   Real inverseSoftFloor, inverseSoftRim, keptSlope;
-  Real shown;  ///< share of the height
+  Real shown;      ///< share of the height
+  Real steepness;  ///< of a rock
 };
 
 template <class Real>
@@ -49,7 +50,8 @@ Shape<Real> shapeOf(const Feature& f, const Program& program) {
           Real(1.0 / (softFloor > f.floorBlend ? softFloor : f.floorBlend)),
           Real(1.0 / (softRim > f.rimBlend ? softRim : f.rimBlend)),
           Real(shown * keptSlope(program.footprint, 0.5 / f.radius)),
-          Real(shown)};
+          Real(shown),
+          Real(rockSteepness(f.radius, program.minWavelength))};
 }
 
 /// Bowl, flattened below by a floor, cut above by the apron of ejecta: roundedMin(roundedMax(bowl, floor), apron) +
@@ -90,12 +92,14 @@ TERRANE_INLINE Profile<Real> craterProfile(const Shape<Real>& p, Real s) {
           (innerWeight * innerSlope + (one - innerWeight) * apronSlope) * p.keptSlope};
 }
 
-/// A boulder: height (1 - s^2)^2, steep sides, rounded top.
+/// A boulder, steep sides and rounded top, or as much of one as a level shows: see rockSteepness.
 template <class Real>
 TERRANE_INLINE Profile<Real> rockProfile(const Shape<Real>& p, Real s) {
-  const Real rest = Real(1) - s * s;
-  const Real q = rest > Real(0) ? rest : Real(0);
-  return {p.peak * (q * q) * p.shown, p.peak * (Real(-4) * s) * q * p.keptSlope};
+  const Real zero(0), rest = Real(1) - s * s, toRim = Real(1) - s;
+  const Real q = rest > zero ? rest : zero, d = toRim > zero ? toRim : zero;
+  const Real dome = d * d, domeSlope = Real(-2) * d, steepSlope = Real(-4) * s * q;
+  return {p.peak * (dome + p.steepness * (q * q - dome)) * p.shown,
+          p.peak * (domeSlope + p.steepness * (steepSlope - domeSlope)) * p.keptSlope};
 }
 
 /// The stage is a compile-time choice so that the compiler sees which arrays of the block are written, and vectorises.
