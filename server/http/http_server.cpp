@@ -16,6 +16,7 @@
 #include <exception>
 #include <list>
 #include <optional>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -33,6 +34,7 @@ constexpr auto kErrorAndValue = net::as_tuple(net::use_awaitable_t<Executor>{});
 
 constexpr std::chrono::milliseconds kAcceptBackoff{100};
 constexpr std::size_t kMaxLingerBytes = 256 * 1024;
+constexpr std::string_view kEveryAnswerBegins = "HTTP/1.1 ";
 
 HeadEndings::Connection connectionField(const Session& session, bool keep) {
   if (!keep) return HeadEndings::Connection::Closed;
@@ -69,6 +71,7 @@ Task<bool> writeResponse(Session& session, const ServiceResponse& response, bool
   session.ending = session.io.endings.at(std::time(nullptr), connectionField(session, keep));
   Buffers buffers{net::buffer(headText), net::buffer(session.ending), net::const_buffer()};
   if (withBody) buffers[2] = response.tile ? net::buffer(response.tile->glb) : net::buffer(response.body);
+  advance(buffers, std::exchange(session.bytesAhead, 0));
   error_code failure;
   const std::size_t bytes = session.socket.write_some(buffers, failure);
   if (failure && failure != net::error::would_block) co_return false;
@@ -81,8 +84,9 @@ Task<ReadOutcome> readRequest(Session& session) {
   session.parser.emplace(session.fields);
   session.parser->header_limit(static_cast<std::uint32_t>(options.maxHeaderBytes));
   session.headerBytes = 0;
+  session.emptyLines = 0;
   for (;;) {
-    if (session.used > 0) {
+    if (beginsRequest(session)) {
       if (session.betweenRequests()) session.enter(Session::Phase::Reading, options.headerTimeout);
       if (const auto outcome = parseInput(session)) co_return *outcome;
     }
@@ -97,6 +101,22 @@ Task<ReadOutcome> readRequest(Session& session) {
   }
 }
 
+void letGo(Pending& pending) {
+  pending.peerGone = true;
+  pending.waiter->wake.cancel();
+}
+
+/// A peer that sends no more may still wait for its answer, or be gone. The bytes that every answer begins with tell:
+/// one that is gone resets the connection.
+void probePeer(Session& session, const std::shared_ptr<Pending>& pending) {
+  error_code failure;
+  session.bytesAhead = session.socket.write_some(net::buffer(kEveryAnswerBegins), failure);
+  if (failure && failure != net::error::would_block) return letGo(*pending);
+  session.socket.async_wait(Socket::wait_error, [pending](error_code stopped) {
+    if (!stopped && pending->waiter) letGo(*pending);
+  });
+}
+
 /// Notices a peer that goes away while its tile is being built. Bytes of a next request end the watch.
 void watchPeer(Session& session, const std::shared_ptr<Pending>& pending) {
   session.socket.async_wait(Socket::wait_read, [pending](error_code failure) {
@@ -106,8 +126,8 @@ void watchPeer(Session& session, const std::shared_ptr<Pending>& pending) {
     waiter->socket.receive(net::buffer(&byte, 1), Socket::message_peek, failure);
     if (!failure) return;
     if (failure == net::error::would_block) return watchPeer(*waiter, pending);
-    pending->peerGone = true;
-    waiter->wake.cancel();
+    if (failure == net::error::eof) return probePeer(*waiter, pending);
+    letGo(*pending);
   });
 }
 

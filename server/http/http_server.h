@@ -4,7 +4,7 @@
 //
 // What comes from outside is bounded: header bytes (431), target (414), bodies (413; GET needs none), time to send a
 // header (408), time between requests, time for a peer to take bytes, connections (503). A client that goes away while
-// its tile waits to be built withdraws the wait.
+// its tile waits to be built withdraws the wait; one that has only closed its sending side is answered.
 
 #include <chrono>
 #include <memory>

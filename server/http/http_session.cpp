@@ -59,6 +59,8 @@ void IoThread::beginStop() {
 
 namespace {
 
+constexpr int kMaxEmptyLines = 4;
+
 /// "METHOD target HTTP/2.0": well formed, of a version that is not served. (Beast calls more than that a bad version.)
 bool namesAnotherVersion(std::string_view input) {
   const std::size_t end = input.find("\r\n");
@@ -78,6 +80,13 @@ ReadOutcome classify(const error_code& failure, const Session& session) {
 }
 
 }  // namespace
+
+bool beginsRequest(Session& session) {
+  const auto input = [&] { return std::string_view(session.input.data(), session.used); };
+  if (session.headerBytes > 0) return true;
+  for (; session.emptyLines < kMaxEmptyLines && input().starts_with("\r\n"); ++session.emptyLines) session.consume(2);
+  return !input().empty() && input() != "\r";
+}
 
 std::optional<ReadOutcome> parseInput(Session& session) {
   error_code failure;

@@ -120,12 +120,18 @@ struct Session {
   std::vector<char> input;  ///< the first `used` bytes: read, not yet parsed
   std::size_t used = 0;
   std::size_t headerBytes = 0;
+  int emptyLines = 0;
+  std::size_t bytesAhead = 0;  ///< of the answer that is being made: sent already
   RequestFields fields;
   std::optional<RequestParser> parser;
   std::string ending;
 };
 
 enum class ReadOutcome { Request, Closed, TimedOut, LineTooLong, HeaderTooLarge, BadVersion, Malformed };
+
+/// Throws away empty lines before a request (RFC 9112 section 2.2), a few; true if what is left begins one. They count
+/// for nothing: a client that sends them is still between requests.
+bool beginsRequest(Session& session);
 
 /// Parses what has been read; empty when more is needed.
 std::optional<ReadOutcome> parseInput(Session& session);

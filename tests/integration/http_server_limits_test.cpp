@@ -77,6 +77,54 @@ TEST_F(HttpServerTest, AClientThatGoesAwayWithdrawsItsBuild) {
   EXPECT_EQ(service->cacheStats().builds, 2u);
 }
 
+TEST_F(HttpServerTest, AClientThatHasSaidAllGetsItsAnswers) {
+  start();
+  gate.hold();
+  HttpConnection first(url), half(url), head(url), several(url), gone(url);
+  first.send("GET " + tileAt("cube/0") + " HTTP/1.1\r\nHost: x\r\n\r\n");
+  gate.waitForBuilds(1);
+  half.send("GET " + tileAt("cube/1") + " HTTP/1.1\r\nHost: x\r\n\r\n");
+  head.send("HEAD " + tileAt("cube/2") + " HTTP/1.0\r\n\r\n");
+  several.send("GET " + tileAt("cube/3") + " HTTP/1.1\r\nHost: x\r\n\r\nGET " + tileAt("cube/4") +
+               " HTTP/1.1\r\nHost: x\r\n\r\n");
+  gone.send("GET " + tileAt("cube/5") + " HTTP/1.1\r\nHost: x\r\n\r\n");
+  for (HttpConnection* connection : {&half, &head, &several, &gone}) connection->shutdownSend();
+  ASSERT_TRUE(eventually([&] { return service->cacheStats().inFlight == 5; }));
+  gone.close();
+  ASSERT_TRUE(eventually([&] { return service->cacheStats().dropped == 1; })) << "half closed first, then gone";
+  gate.release();
+  EXPECT_EQ(half.read()->body, "cube/1");
+  EXPECT_EQ(head.read(false)->fields.at("content-length"), "6");
+  EXPECT_EQ(several.read()->body, "cube/3");
+  EXPECT_EQ(several.read()->body, "cube/4");
+  for (HttpConnection* connection : {&half, &head, &several}) EXPECT_TRUE(connection->closedByServer());
+  first.close();
+  EXPECT_TRUE(eventually([&] { return server->connections() == 0; }));
+}
+
+TEST_F(HttpServerTest, AClientThatHasSaidAllIsToldWhenItsTileTakesTooLong) {
+  options.responseTimeout = 100ms;
+  start();
+  gate.hold();
+  HttpConnection connection(url);
+  connection.send("GET " + tileAt("cube/0") + " HTTP/1.1\r\nHost: x\r\n\r\n");
+  connection.shutdownSend();
+  EXPECT_EQ(connection.read()->status, 503);
+  EXPECT_TRUE(connection.closedByServer());
+}
+
+TEST_F(HttpServerTest, EmptyLinesDoNotKeepAConnection) {
+  options.headerTimeout = 200ms;
+  options.idleTimeout = 200ms;
+  start();
+  HttpConnection fresh(url), used(url), half(url);
+  EXPECT_EQ(used.request("/healthz")->status, 200);
+  fresh.send("\r\n");
+  used.send("\r\n\r\n");
+  half.send("\r");
+  for (HttpConnection* connection : {&fresh, &used, &half}) EXPECT_TRUE(connection->closedByServer());
+}
+
 TEST_F(HttpServerTest, ATileThatTakesTooLongIs503AndTheConnectionIsKept) {
   options.responseTimeout = 100ms;
   start();

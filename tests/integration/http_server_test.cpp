@@ -80,6 +80,20 @@ TEST_F(HttpServerTest, ARequestThatArrivesByteByByteIsARequest) {
   EXPECT_EQ(connection.read()->body, "cube/3");
 }
 
+TEST_F(HttpServerTest, AFewEmptyLinesBeforeARequestAreNothing) {
+  start();
+  HttpConnection connection(url);
+  for (const char* lines : {"\r\n", "\r\n\r\n", "\r\n\r\n\r\n\r\n", ""}) {
+    connection.send(lines + ("GET " + tileAt("cube/3") + " HTTP/1.1\r\nHost: x\r\n\r\n"));
+    EXPECT_EQ(connection.read()->body, "cube/3") << lines;
+  }
+  for (const char c : "\r\nGET " + tileAt("cube/2") + " HTTP/1.1\r\nHost: x\r\n\r\n")
+    connection.send(std::string_view(&c, 1));
+  EXPECT_EQ(connection.read()->body, "cube/2");
+  connection.send("\r\n\r\n\r\n\r\n\r\nGET / HTTP/1.1\r\nHost: x\r\n\r\n");
+  EXPECT_EQ(connection.read()->status, 400) << "many are no request";
+}
+
 TEST_F(HttpServerTest, Http10ClosesUnlessItAsksToKeep) {
   start();
   HttpConnection closing(url), keeping(url);
