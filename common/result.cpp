@@ -1,5 +1,7 @@
 #include "common/result.h"
 
+#include <fmt/format.h>
+
 namespace terrane {
 
 std::string_view errorKindName(ErrorKind kind) noexcept {
@@ -28,6 +30,22 @@ std::string_view errorKindName(ErrorKind kind) noexcept {
       return "internal";
   }
   return "internal";
+}
+
+std::string quotedForMessage(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  std::string quoted = "\"";
+  for (const char c : text.substr(0, kLongest)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      quoted += {'\\', c};
+    else if (byte < 0x20 || byte >= 0x7f)
+      quoted += fmt::format("\\x{:02x}", byte);
+    else
+      quoted += c;
+  }
+  quoted += text.size() > kLongest ? "...\"" : "\"";
+  return quoted;
 }
 
 }  // namespace terrane

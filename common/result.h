@@ -27,6 +27,9 @@ enum class ErrorKind : std::uint8_t {
 
 std::string_view errorKindName(ErrorKind kind) noexcept;
 
+/// In quotes, on one line, control characters and what is not UTF-8 escaped, cut at 60 bytes.
+std::string quotedForMessage(std::string_view text);
+
 /// field names what was wrong as the user wrote it: a flag ("--listen"), a key ("body[0].radius"), a part of a URL
 /// ("face").
 struct Error {

@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "common/command_line.h"
 #include "common/scene/scene.h"
 #include "server/build/heap_policy.h"
 #include "server/explain.h"
@@ -25,9 +26,6 @@
 
 namespace terrane {
 namespace {
-
-constexpr int kUsageError = 2;
-constexpr int kFailure = 1;
 
 /// One line to stderr, and the exit status.
 int complain(const std::string& text, int status) {
@@ -68,7 +66,7 @@ void watchSignals(HttpServer* server, TileService* service) {
   service->setReady(false);
   server->stop();
   sigwait(&signals, &signal);
-  _exit(kFailure);
+  _exit(kExitFailed);
 }
 
 int serve(const Scene& scene, const ServerSettings& settings) {
@@ -81,7 +79,7 @@ int serve(const Scene& scene, const ServerSettings& settings) {
 
   TileService service(scene, settings.service);
   const Result<std::unique_ptr<HttpServer>> server = HttpServer::open(settings.http, service);
-  if (!server) return complain(server.error().text(), kFailure);
+  if (!server) return complain(server.error().text(), exitStatus(server.error()));
   std::thread(watchSignals, server->get(), &service).detach();
 
   std::string urls;
@@ -97,7 +95,7 @@ int serve(const Scene& scene, const ServerSettings& settings) {
 
 int run(int argc, char** argv) {
   auto parsed = parseServerCommandLine(argc, argv);
-  if (!parsed) return complain(parsed.error().text(), kUsageError);
+  if (!parsed) return complain(parsed.error().text(), kExitWrongUsage);
   if (const auto* text = std::get_if<PrintAndExit>(&*parsed)) return printOut(text->text), 0;
   const ServerSettings& settings = std::get<ServerSettings>(*parsed);
 
@@ -108,7 +106,8 @@ int run(int argc, char** argv) {
   const Result<Scene> scene = loadScene(settings.scene);
   if (!scene) {  // a scene file's error says file, line and key by itself
     const Error& error = scene.error();
-    return complain(error.field == "--scene" ? error.text() : error.message, kUsageError);
+    const std::string text = error.field == "--scene" ? settings.sceneSource + ": " + error.message : error.message;
+    return complain(text, kExitWrongUsage);
   }
   if (settings.check) {
     printOut(fmt::format("terrane-server: scene {} is valid: {} {}, {} {}\n", scene->name, scene->bodies.size(),
@@ -128,6 +127,6 @@ int main(int argc, char** argv) {
     return terrane::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "terrane-server: %s\n", error.what());
-    return 1;
+    return terrane::kExitFailed;
   }
 }

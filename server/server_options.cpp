@@ -5,6 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "common/command_line.h"
+#include "server/config/config_file.h"
+#include "server/http/listen_address.h"
 #include "server/scenes/scene_file.h"
 #include "server/store/byte_size.h"
 
@@ -33,6 +36,7 @@ struct RawOptions {
   std::string memoryCache = "256MiB";
   std::string simd;
   std::string maxHeader = "8KiB";
+  std::string config;
   double headerTimeout = 10, idleTimeout = 60, writeTimeout = 30, responseTimeout = 60, shutdownGrace = 5;
 };
 
@@ -40,6 +44,13 @@ std::string oneLine(std::string text) {
   std::ranges::replace(text, '\n', ' ');
   while (text.ends_with(' ')) text.pop_back();
   return text;
+}
+
+/// CLI11 begins some of its messages with the flag.
+std::string withoutFlag(std::string message, const std::string& key) {
+  const std::string flag = "--" + key + ": ";
+  if (message.starts_with(flag)) message.erase(0, flag.size());
+  return message;
 }
 
 void addOptions(CLI::App& app, ServerSettings& settings, RawOptions& raw) {
@@ -114,9 +125,9 @@ void addOptions(CLI::App& app, ServerSettings& settings, RawOptions& raw) {
   app.add_flag("--check", settings.check, "Validate the scene, say so, and exit");
   app.add_flag("--explain", settings.explain,
                "Print the bodies, each effect (on or off, why, its cost) and what was constructed, and exit");
-  app.set_config("--config", "",
-                 "Read flags from a TOML or INI file: scene = \"moon\", threads = 4; flags given here win");
-  app.allow_config_extras(CLI::config_extras_mode::error);
+  app.add_option("--config", raw.config,
+                 "Read flags from a TOML or INI file: scene = \"moon\", threads = 4; flags given here win")
+      ->type_name("FILE");
 }
 
 std::chrono::milliseconds milliseconds(double seconds) {
@@ -124,6 +135,8 @@ std::chrono::milliseconds milliseconds(double seconds) {
 }
 
 Result<void> finish(ServerSettings& settings, const RawOptions& raw) {
+  for (const std::string& text : settings.http.listen)
+    if (const Result<ListenAddress> listen = parseListenAddress(text); !listen) return listen.error();
   const Result<std::size_t> cache = parseByteSize(raw.memoryCache, "--memory-cache");
   if (!cache) return cache.error();
   settings.service.memoryCacheBytes = *cache;
@@ -149,27 +162,96 @@ Result<void> finish(ServerSettings& settings, const RawOptions& raw) {
   return {};
 }
 
+/// One reading of flags, from the defaults on.
+struct CommandLine {
+  CommandLine() {
+    addOptions(app, settings, raw);
+    app.set_version_flag("--version", "terrane-server " TERRANE_VERSION, "Print the version and exit");
+    app.footer(kExitStatusHelp);
+    app.get_formatter()->column_width(34);
+  }
+
+  /// Throws CLI::Success for --help and --version.
+  Result<void> read(std::vector<std::string> words) try {
+    if (Result<void> values = checkFlagValues(words, [&](std::string_view flag) { return needsValue(flag); }); !values)
+      return values;
+    std::ranges::reverse(words);  // CLI11 takes them last first
+    app.parse(std::move(words));
+    return finish(settings, raw);
+  } catch (const CLI::Success&) {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    return makeError(ErrorKind::InvalidArgument, "", oneLine(error.what()) + " (see --help)");
+  }
+
+  const CLI::Option* option(std::string_view flag) const { return app.get_option_no_throw(std::string(flag)); }
+  bool needsValue(std::string_view flag) const { return option(flag) && option(flag)->get_items_expected_min() > 0; }
+
+  CLI::App app{kDescription, "terrane-server"};
+  ServerSettings settings;
+  RawOptions raw;
+};
+
+/// What a line of the file is on the command line; empty for a switch that is off.
+Result<std::vector<std::string>> wordsOf(const ConfigEntry& entry) {
+  const std::string flag = "--" + entry.key;
+  const CommandLine flags;
+  if (flags.option(flag) == nullptr || entry.key == "config" || entry.key == "help" || entry.key == "version")
+    return makeError(ErrorKind::InvalidArgument, flag, "no such flag in a file (see --help)");
+  std::vector<std::string> words;
+  if (flags.needsValue(flag)) {
+    for (const std::string& value : entry.values) words.push_back(flag + "=" + value);
+  } else if (entry.values.size() != 1 || (entry.values[0] != "true" && entry.values[0] != "false")) {
+    return makeError(ErrorKind::InvalidArgument, flag,
+                     quotedForMessage(entry.values[0]) + " is no value of a switch; allowed: true, false");
+  } else if (entry.values[0] == "true") {
+    words.push_back(flag);
+  }
+  if (Result<void> read = CommandLine().read(words); !read) return read.error();
+  return words;
+}
+
+/// The words that stand for the file, without those whose flags were given.
+Result<std::vector<std::string>> wordsOfConfig(const std::string& file, CommandLine& given) {
+  const Result<std::vector<ConfigEntry>> entries = readConfigFile(file);
+  if (!entries) return entries.error();
+  std::vector<std::string> all;
+  for (const ConfigEntry& entry : *entries) {
+    const std::string place = fmt::format("{}:{}: {}", file, entry.line, entry.key);
+    const Result<std::vector<std::string>> words = wordsOf(entry);
+    if (!words) {
+      const Error& error = words.error();
+      const bool named = error.field.empty() || error.field == "--" + entry.key;
+      return makeError(error.kind, place, named ? withoutFlag(error.message, entry.key) : error.text());
+    }
+    if (given.option("--" + entry.key)->count() > 0) continue;
+    all.insert(all.end(), words->begin(), words->end());
+    if (entry.key == "scene") given.settings.sceneSource = place;
+  }
+  return all;
+}
+
 }  // namespace
 
 Result<std::variant<ServerSettings, PrintAndExit>> parseServerCommandLine(int argc, const char* const* argv) try {
   using Parsed = std::variant<ServerSettings, PrintAndExit>;
-  ServerSettings settings;
-  RawOptions raw;
-  CLI::App app(kDescription, "terrane-server");
-  addOptions(app, settings, raw);
-  app.set_version_flag("--version", "terrane-server " TERRANE_VERSION, "Print the version and exit");
-  app.get_formatter()->column_width(34);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  CommandLine given;
   try {
-    app.parse(argc, argv);
+    if (Result<void> read = given.read(words); !read) return std::move(read).error();
   } catch (const CLI::CallForVersion& version) {
     return Parsed(PrintAndExit{std::string(version.what()) + "\n"});
-  } catch (const CLI::CallForHelp&) {
-    return Parsed(PrintAndExit{app.help()});
-  } catch (const CLI::ParseError& error) {
-    return makeError(ErrorKind::InvalidArgument, "", oneLine(error.what()) + " (see --help)");
+  } catch (const CLI::Success&) {
+    return Parsed(PrintAndExit{given.app.help()});
   }
-  if (Result<void> finished = finish(settings, raw); !finished) return std::move(finished).error();
-  return Parsed(std::move(settings));
+  if (given.raw.config.empty()) return Parsed(std::move(given.settings));
+  const Result<std::vector<std::string>> more = wordsOfConfig(given.raw.config, given);
+  if (!more) return more.error();
+  words.insert(words.begin(), more->begin(), more->end());
+  CommandLine all;
+  if (Result<void> read = all.read(words); !read) return std::move(read).error();
+  all.settings.sceneSource = given.settings.sceneSource;
+  return Parsed(std::move(all.settings));
 } catch (const std::exception& error) {
   return makeError(ErrorKind::Internal, "", oneLine(error.what()));
 }

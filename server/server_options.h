@@ -12,6 +12,7 @@ namespace terrane {
 
 struct ServerSettings {
   std::string scene = "moon";
+  std::string sceneSource = "--scene";  ///< where that was said: the flag, or file, line and key
   ServerOptions http;
   TileService::Options service;
   std::string logLevel = "info";
@@ -24,7 +25,8 @@ struct PrintAndExit {
   std::string text;
 };
 
-/// Errors: one line; field names the flag where one is to blame.
+/// Reads the file of --config too. Errors: one line; field names the flag, or file, line and key, where one is to
+/// blame.
 Result<std::variant<ServerSettings, PrintAndExit>> parseServerCommandLine(int argc, const char* const* argv);
 
 }  // namespace terrane

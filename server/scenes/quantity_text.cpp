@@ -122,22 +122,6 @@ std::string formatQuantity(double value, Quantity quantity) {
   return fmt::format("{:.10g}", value);
 }
 
-std::string quotedForMessage(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
-  std::string quoted = "\"";
-  for (const char c : text.substr(0, kLongest)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      quoted += {'\\', c};
-    else if (byte < 0x20 || byte >= 0x7f)
-      quoted += fmt::format("\\x{:02x}", byte);
-    else
-      quoted += c;
-  }
-  quoted += text.size() > kLongest ? "...\"" : "\"";
-  return quoted;
-}
-
 std::string_view nearestWord(std::string_view word, std::span<const std::string_view> candidates) {
   std::string_view nearest;
   std::size_t best = std::min<std::size_t>(3, word.size() / 2 + 1);  // one more than is accepted

@@ -21,9 +21,6 @@ Result<double> parseQuantity(std::string_view text, Quantity quantity);
 /// The shortest text that parseQuantity reads as a value this close: "1737.4 km", "250 m", "52 deg", "0.02".
 std::string formatQuantity(double value, Quantity quantity);
 
-/// In quotes, on one line, control characters and what is not UTF-8 escaped, cut at 60 bytes.
-std::string quotedForMessage(std::string_view text);
-
 /// The candidate that is a typing mistake away (at most two edits, fewer for short words), or empty.
 std::string_view nearestWord(std::string_view word, std::span<const std::string_view> candidates);
 
