@@ -80,19 +80,21 @@ BodyInfo readBody(const JsonCursor& at) {
   return body;
 }
 
-/// Empty if this build does not know the effect. Settings that it does not know are skipped, absent ones have their
-/// defaults.
-std::optional<EffectCall> readEffect(const JsonCursor& at) {
-  const auto kind = findEffect(at.member("name").text(kMaxNameBytes));
-  if (!kind) return std::nullopt;
+/// Settings that this build does not know are skipped, absent ones have their defaults.
+void readEffect(const JsonCursor& at, SceneInfo& scene) {
+  const std::string name = at.member("name").text(kMaxNameBytes);
+  const auto kind = findEffect(name);
+  if (!kind) {
+    if (std::ranges::count(scene.unknownEffects, name) == 0) scene.unknownEffects.push_back(name);
+    return;
+  }
   EffectCall call{*kind, defaultValues(effectRow(*kind).parameters)};
   const auto parameters = at.optionalMember("parameters");
-  if (!parameters) return call;
   for (const ParameterSpec& spec : effectRow(*kind).parameters) {
-    const auto value = parameters->optionalMember(spec.name);
+    const auto value = parameters ? parameters->optionalMember(spec.name) : std::nullopt;
     if (value) call.parameters[std::string(spec.name)] = value->number(spec.minimum, spec.maximum);
   }
-  return call;
+  scene.effects.push_back(std::move(call));
 }
 
 SceneInfo readScene(const JsonCursor& at) {
@@ -110,7 +112,7 @@ SceneInfo readScene(const JsonCursor& at) {
   const JsonCursor effects = at.member("effects");
   const std::size_t effectCount = effects.arraySize(0, kMaxEffects);
   for (std::size_t i = 0; i < effectCount && at.ok(); ++i) {
-    if (auto call = readEffect(effects.element(i))) scene.effects.push_back(std::move(*call));
+    readEffect(effects.element(i), scene);
   }
   return scene;
 }

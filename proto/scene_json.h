@@ -25,11 +25,12 @@ struct SceneInfo {
   std::string summary;
   std::vector<BodyInfo> bodies;
   std::vector<EffectCall> effects;
+  std::vector<std::string> unknownEffects = {};  ///< read: names that this build does not know, any text, each once
 };
 
 std::string writeSceneJson(const SceneInfo& scene);
-/// Any bytes: a scene or one error naming the key, e.g. "bodies[0].radiusMeters". Unknown effects are skipped, so that
-/// an old viewer opens a newer server's scene.
+/// Any bytes: a scene or one error naming the key, e.g. "bodies[0].radiusMeters". Unknown effects are only named,
+/// so that an old viewer opens a newer server's scene.
 Result<SceneInfo> readSceneJson(std::string_view json);
 
 }  // namespace terrane

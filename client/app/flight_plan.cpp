@@ -16,16 +16,15 @@ Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place) 
     return builtInFlight(nameOrFile, place.longitude, place.latitude);
   auto flight = loadFlight(nameOrFile);
   if (flight) return flight;
-  Error error = flight.error();
-  error.message = error.text() + " (built in are descent and orbit)";
-  error.field = "--flight";
-  return error;
+  const Error& error = flight.error();
+  return makeError(ErrorKind::InvalidArgument, "--flight",
+                   (error.field == "--flight" ? error.message : error.text()) + " (built in are descent and orbit)");
 }
 
 Result<FlightPlan> planFlight(const Flight& flight, double stepSeconds, std::size_t maxFrames) {
   const double start = flight.points.front().seconds;
   if ((flight.durationSeconds() - start) / stepSeconds > kMostFrames)
-    return makeError(ErrorKind::TooLarge, "--step",
+    return makeError(ErrorKind::InvalidArgument, "--step",
                      fmt::format("{} s makes more than {:.0f} frames of this flight", stepSeconds, kMostFrames));
   FlightPlan plan;
   plan.aboveGround = flight.aboveGround;

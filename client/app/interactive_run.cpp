@@ -19,6 +19,7 @@
 #include "client/controls/frame_budget.h"
 #include "client/gl/image.h"
 #include "client/render/hud.h"
+#include "common/command_line.h"
 
 namespace terrane {
 namespace {
@@ -318,9 +319,9 @@ Done InteractiveRun::writeResults() {
 int runInteractive(const ViewOptions& options, Window& window, Clock::time_point start) {
   InteractiveRun run(options, window, start);
   const Done done = run.run();
-  if (done) return 0;
+  if (done) return kExitDone;
   fmt::print(stderr, "terrane-view: {}\n", done.error().text());
-  return 1;
+  return exitStatus(done.error());
 }
 
 }  // namespace terrane

@@ -14,6 +14,7 @@
 #include "client/gl/image.h"
 #include "client/render/hud.h"
 #include "client/render/readable_units.h"
+#include "common/command_line.h"
 
 namespace terrane {
 namespace {
@@ -64,7 +65,7 @@ class ScriptedRun {
   Mark mark_;
   DrawStats drawn_;
   Flight record_;
-  bool firstFullView_ = false;
+  bool sceneThere_ = false, firstFullView_ = false;
 };
 
 Error ScriptedRun::notComplete(std::string_view what, double seconds) const {
@@ -72,8 +73,8 @@ Error ScriptedRun::notComplete(std::string_view what, double seconds) const {
   std::string why = status.message;
   if (why.empty() && status.failed > 0) why = fmt::format("{} tiles failed", status.failed);
   if (why.empty()) why = "the server is slower than that";
-  // A server that is not there, or says nothing at all, is the server's flag to name; a slow view is the limit's.
-  const bool dead = status.link == LinkState::Offline || status.bytesReceived == 0;
+  // A server that is not there, or has no scene, is the server's flag to name; a slow view is the limit's.
+  const bool dead = status.link == LinkState::Offline || !sceneThere_ || status.bytesReceived == 0;
   return makeError(ErrorKind::Timeout, dead ? "--server" : "--time-limit",
                    fmt::format("{} after {:.3g} s: {}", what, seconds, why));
 }
@@ -83,7 +84,10 @@ Done ScriptedRun::waitForScene() {
   for (;;) {
     const auto ready = session_->ready();
     if (!ready) return ready.error();
-    if (*ready) return true;
+    if (*ready) {
+      sceneThere_ = true;
+      return true;
+    }
     if (millisecondsSince(begin) > options_.timeLimitSeconds * 1000)
       return notComplete("no scene", options_.timeLimitSeconds);
     window_.wait(0.02);
@@ -251,9 +255,9 @@ Done ScriptedRun::run() {
 int runScripted(const ViewOptions& options, Window& window, Clock::time_point start) {
   ScriptedRun run(options, window, start);
   const Done done = run.run();
-  if (done) return 0;
+  if (done) return kExitDone;
   fmt::print(stderr, "terrane-view: {}\n", done.error().text());
-  return 1;
+  return exitStatus(done.error());
 }
 
 }  // namespace terrane

@@ -13,6 +13,9 @@
 #include <tuple>
 #include <utility>
 
+#include "client/net/server_url.h"
+#include "common/command_line.h"
+
 namespace terrane {
 namespace {
 
@@ -24,7 +27,7 @@ constexpr const char* kDescription =
 constexpr const char* kFooter = R"(
 Modes
   Without --headless, --settle, --capture, --frames or --explain a window opens and follows your hands.
-  With one of them the run is scripted: it goes to its end by itself and leaves with 0, or prints one line and leaves with 1.
+  With one of them the run is scripted: it goes to its end by itself, or prints one line that says why not.
   --headless needs no display. Without --flight and --frames it implies --settle.
 
 Controls
@@ -175,6 +178,7 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   ViewOptions& o = raw.options;
   if (o.serverUrl.empty())
     return flagError("--server", "is missing: where is the server? e.g. --server http://127.0.0.1:8080");
+  if (const auto server = parseServerUrl(o.serverUrl); !server) return server.error();
   if (raw.camera) {
     const auto pose = parseCamera(*raw.camera);
     if (!pose) return pose.error();
@@ -202,7 +206,8 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   o.cacheBudgetBytes = *cacheBudget;
   o.memoryBudgetBytes = *memoryBudget;
   if (o.headless && o.flight.empty() && o.frames == 0) o.settle = true;
-  if (raw.cache.empty())
+  o.cacheIsDefault = raw.cache.empty();
+  if (o.cacheIsDefault)
     o.cacheFile = o.scripted() ? std::string{} : defaultCacheFile(environment);
   else if (raw.cache != "none")
     o.cacheFile = raw.cache;
@@ -298,10 +303,15 @@ Result<std::variant<ViewOptions, OptionsText>> parseViewOptions(const std::vecto
   CLI::App app{kDescription, "terrane-view"};
   RawOptions raw;
   declareOptions(app, raw);
-  app.footer(kFooter);
+  app.footer(std::string(kFooter) + "\n\n" + kExitStatusHelp);
   app.set_version_flag("--version", "terrane-view " TERRANE_VERSION);
   app.get_formatter()->column_width(40);
   for (CLI::Option* option : app.get_options()) option->description(wrapped(option->get_description()));
+  const auto needsValue = [&](std::string_view flag) {
+    const CLI::Option* option = app.get_option_no_throw(std::string(flag));
+    return option != nullptr && option->get_items_expected_min() > 0;
+  };
+  if (const auto values = checkFlagValues(arguments, needsValue); !values) return values.error();
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them last first
   } catch (const CLI::CallForHelp&) {

@@ -30,7 +30,8 @@ struct ViewOptions {
   bool headless = false, settle = false, hud = false, explain = false;
   std::string captureFile;  ///< "%d" in it: one picture for each point of the flight
   std::string statsFile;
-  std::string cacheFile;  ///< empty: no disk cache
+  std::string cacheFile;        ///< empty: no disk cache
+  bool cacheIsDefault = false;  ///< nobody asked for it: what goes wrong with it stops nothing
   std::size_t cacheBudgetBytes = 512u << 20;
   std::size_t memoryBudgetBytes = 128u << 20;
   int frames = 0;                 ///< 0: as many as it takes

@@ -11,11 +11,10 @@
 #include "client/app/scripted_run.h"
 #include "client/app/view_options.h"
 #include "client/gl/window.h"
+#include "common/command_line.h"
 
 namespace terrane {
 namespace {
-
-constexpr int kFailed = 1, kWrongUsage = 2;
 
 std::string environmentVariable(const char* name) {
   const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): read before any thread starts
@@ -33,7 +32,7 @@ int view(const ViewOptions& options, std::chrono::steady_clock::time_point start
   windowOptions.heightPixels = options.heightPixels;
   windowOptions.headless = options.headless || options.explain;
   auto window = Window::open(windowOptions);
-  if (!window) return fail(window.error(), kFailed);
+  if (!window) return fail(window.error(), kExitFailed);
   return options.scripted() ? runScripted(options, **window, start) : runInteractive(options, **window, start);
 }
 
@@ -43,14 +42,14 @@ int runViewProgram(int argc, char** argv) {
   const auto start = std::chrono::steady_clock::now();
   try {
     const auto parsed = parseViewOptions({argv + 1, argv + argc}, &environmentVariable);
-    if (!parsed) return fail(parsed.error(), kWrongUsage);
+    if (!parsed) return fail(parsed.error(), kExitWrongUsage);
     if (const auto* text = std::get_if<OptionsText>(&*parsed)) {
       fmt::print("{}", text->text);
-      return 0;
+      return kExitDone;
     }
     return view(std::get<ViewOptions>(*parsed), start);
   } catch (const std::exception& error) {  // the last edge: out of memory, or a bug
-    return fail(makeError(ErrorKind::Internal, "", error.what()), kFailed);
+    return fail(makeError(ErrorKind::Internal, "", error.what()), kExitFailed);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <thread>
 #include <unordered_map>
@@ -33,6 +34,8 @@ void returnFreedMemory() {
 #endif
 }
 
+void warn(const std::string& text) { fmt::print(stderr, "terrane-view: warning: {}\n", text); }
+
 std::uint32_t gridIndex(double coordinate, int level) {
   const double cells = static_cast<double>(std::uint64_t{1} << level);
   return static_cast<std::uint32_t>(std::clamp(std::floor((coordinate + 1) / 2 * cells), 0.0, cells - 1));
@@ -57,6 +60,10 @@ struct ViewSession::State {
   bool firstUpdate = true, wasSettled = false;
   std::unordered_map<FacePath, TilePtr> kept;  ///< only to explain: otherwise a mesh is dropped once it is on the GPU
 
+  const SceneInfo* checkedScene = nullptr;
+  std::unordered_set<std::string> namedEffects;
+
+  void nameUnknownEffects();
   bool takeArrivals(const UploadBudget& budget);
   ViewPose resolved(const View& view) const;
   std::vector<WantedTile> groundChain(double errorPixels) const;
@@ -73,7 +80,13 @@ Result<std::unique_ptr<ViewSession>> ViewSession::open(const ViewOptions& option
   streamOptions.cacheFile = options.cacheFile;
   streamOptions.cacheBudgetBytes = options.cacheBudgetBytes;
   streamOptions.decodeThreads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 4u));
-  auto stream = TileStream::open(std::move(streamOptions), std::move(wake));
+  auto stream = TileStream::open(streamOptions, wake);
+  if (!stream && !options.cacheFile.empty() && stream.error().field == options.cacheFile) {
+    if (!options.cacheIsDefault) return makeError(stream.error().kind, "--cache", stream.error().text());
+    warn(stream.error().text() + "; going on without a disk cache");
+    streamOptions.cacheFile.clear();
+    stream = TileStream::open(std::move(streamOptions), std::move(wake));
+  }
   if (!stream) return stream.error();
   auto state = std::make_unique<State>();
   state->options = options;
@@ -88,6 +101,7 @@ Result<bool> ViewSession::ready() {
   const SceneInfo* scene = s.stream->scene();
   if (scene == nullptr) return false;
   if (s.renderer) return true;
+  s.nameUnknownEffects();
   if (scene->bodies.empty()) return makeError(ErrorKind::Unsupported, "--server", "its scene has no body");
   const auto found = std::find_if(scene->bodies.begin(), scene->bodies.end(),
                                   [&](const BodyInfo& body) { return body.name == s.options.body; });
@@ -107,6 +121,16 @@ Result<bool> ViewSession::ready() {
 
 const SceneInfo& ViewSession::scene() const { return *state_->stream->scene(); }
 const BodyInfo& ViewSession::body() const { return *state_->stream->body(); }
+
+// Once for each effect, whichever scene names it.
+void ViewSession::State::nameUnknownEffects() {
+  const SceneInfo* scene = stream->scene();
+  if (scene == std::exchange(checkedScene, scene)) return;
+  for (const std::string& name : scene->unknownEffects)
+    if (namedEffects.insert(name).second)
+      warn("the scene has the effect " + quotedForMessage(name) +
+           ", which this viewer does not know: going on without");
+}
 
 // Uploads what is decoded until the frame's share of bytes or time is used up.
 bool ViewSession::State::takeArrivals(const UploadBudget& budget) {
@@ -182,6 +206,7 @@ bool ViewSession::State::requestTiles(double errorPixels, bool groundFirst) {
 
 UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   State& s = *state_;
+  s.nameUnknownEffects();
   const bool arrived = s.takeArrivals(budget);
   const ViewPose pose = s.resolved(view);
   const double altitudeBefore = s.pose.altitudeMeters;

@@ -32,7 +32,8 @@ struct UpdateReport {
 
 class ViewSession {
  public:
-  /// Does not wait for the server. wake: from any thread, when something arrived. Errors: as TileStream::open.
+  /// Does not wait for the server. wake: from any thread, when something arrived. A default cache that cannot be
+  /// opened is a warning. Errors: as TileStream::open; Io naming "--cache".
   static Result<std::unique_ptr<ViewSession>> open(const ViewOptions& options, std::function<void()> wake);
   ~ViewSession();
 

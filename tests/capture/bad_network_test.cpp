@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
+#include "proto/scene_json.h"
 #include "tests/support/view_processes.h"
 
 namespace terrane {
@@ -31,10 +34,37 @@ class Port {
   Port(const Port&) = delete;
   Port& operator=(const Port&) = delete;
   const std::string& url() const { return url_; }
+  int socket() const { return socket_; }
 
  private:
   int socket_;
   std::string url_;
+};
+
+/// Answers whatever it is asked with the same text.
+class SameAnswer {
+ public:
+  explicit SameAnswer(const std::string& body)
+      : answer_("HTTP/1.1 200 OK\r\nConnection: close\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" +
+                body),
+        thread_([this] { serve(); }) {}
+  ~SameAnswer() {
+    ::shutdown(port_.socket(), SHUT_RDWR);
+    thread_.join();
+  }
+  const std::string& url() const { return port_.url(); }
+
+ private:
+  void serve() {
+    for (int client = -1; (client = ::accept(port_.socket(), nullptr, nullptr)) >= 0; ::close(client)) {
+      char request[4096];
+      if (::recv(client, request, sizeof request, 0) > 0) ::send(client, answer_.data(), answer_.size(), MSG_NOSIGNAL);
+    }
+  }
+
+  Port port_{true};
+  std::string answer_;
+  std::thread thread_;
 };
 
 void expectOneLineNamingTheServer(const ViewOutcome& outcome) {
@@ -55,9 +85,37 @@ TEST(BadNetwork, AServerThatNeverAnswersEndsAScriptedRunToo) {
       runView({"--server", port.url(), "--headless", "--size", "64x36", "--time-limit", "2"}, 60s));
 }
 
+TEST(BadNetwork, ABadSceneIsTheServersAndSaysWhatIsWrong) {
+  const SameAnswer server(R"({"name": "x", "summary": "", "bodies": 7})");
+  const auto outcome = runView({"--server", server.url(), "--headless", "--size", "64x36", "--time-limit", "1"}, 60s);
+  expectOneLineNamingTheServer(outcome);
+  EXPECT_EQ(outcome.errors.find("--time-limit"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("/v1/scene.json: bodies"), std::string::npos) << outcome.errors;
+}
+
+TEST(BadNetwork, AnUnknownEffectIsNamedOnceAndNoReasonToStop) {
+  SceneInfo scene{"x", "", {}, {}};
+  scene.bodies.push_back({"moon", "0123456789abcdef", {Scheme::Cube}, 64, {}});
+  scene.bodies[0].selection.radiusMeters = scene.bodies[0].selection.occluderRadiusMeters = 1000;
+  scene.bodies[0].selection.geometricErrorMeters = {1000};
+  std::string text = writeSceneJson(scene);
+  const std::string effects = R"("effects": [)";
+  ASSERT_NE(text.find(effects), std::string::npos) << text;
+  text.insert(text.find(effects) + effects.size(), R"({"name":"aurora"},{"name":"\u001b[31m"},{"name":"aurora"})");
+  const SameAnswer server(text);
+  // Nothing but the scene can be had here, so something else ends the run.
+  const auto outcome = runView({"--server", server.url(), "--headless", "--size", "64x36", "--body", "mars"}, 60s);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(lineCount(outcome.errors), 3u) << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("\"aurora\""), outcome.errors.rfind("\"aurora\"")) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("warning: the scene has the effect \"aurora\""), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("\"\\x1b[31m\""), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("--body: "), std::string::npos) << outcome.errors;
+}
+
 TEST(BadNetwork, ANonsenseServerUrlIsRefused) {
   const auto outcome = runView({"--server", "http://", "--headless", "--size", "64x36", "--time-limit", "2"}, 60s);
-  EXPECT_NE(outcome.status, 0);
+  EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(lineCount(outcome.errors), 1u) << outcome.errors;
   EXPECT_NE(outcome.errors.find("--server"), std::string::npos) << outcome.errors;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "client/app/view_options.h"
+#include "client/app/view_session.h"
 #include "tests/support/view_processes.h"
 
 namespace terrane {
@@ -74,6 +75,8 @@ TEST(ViewOptions, HeadlessSettlesUnlessItFliesOrCountsFrames) {
 
 TEST(ViewOptions, OnlyAWindowHasADiskCacheOfItself) {
   EXPECT_EQ(parsed({}, &cacheHome).cacheFile, "/cache/terrane/tiles.sqlite");
+  EXPECT_TRUE(parsed({}, &cacheHome).cacheIsDefault);
+  EXPECT_FALSE(parsed({"--cache", "x.sqlite"}, &cacheHome).cacheIsDefault);
   EXPECT_EQ(parsed({}, &homeOnly).cacheFile, "/home/u/.cache/terrane/tiles.sqlite");
   EXPECT_EQ(parsed({}, &noEnvironment).cacheFile, "");
   EXPECT_EQ(parsed({"--headless"}, &cacheHome).cacheFile, "");
@@ -109,6 +112,15 @@ TEST(ViewOptions, WhatIsWrongIsNamedByItsFlag) {
       {{"--camera", "1,2,3,4,-91"}, "--camera"},
       {{"--camera", "1,2,3,4,5,6"}, "--camera"},
       {{"--camera", ""}, "--camera"},
+      {{"--capture", ""}, "--capture"},
+      {{"--capture="}, "--capture"},
+      {{"--stats", ""}, "--stats"},
+      {{"--flight", ""}, "--flight"},
+      {{"--cache", ""}, "--cache"},
+      {{"--body", ""}, "--body"},
+      {{"--record", ""}, "--record"},
+      {{"--record", "--headless"}, "--record"},
+      {{"--camera", "--headless"}, "--camera"},
       {{"--size", "1280"}, "--size"},
       {{"--size", "1280x"}, "--size"},
       {{"--size", "8x8"}, "--size"},
@@ -140,6 +152,8 @@ TEST(ViewOptions, WhatIsWrongIsNamedByItsFlag) {
     EXPECT_EQ(error.text().find('\n'), std::string::npos) << error.text();
   }
   EXPECT_EQ(refused({}, false).field, "--server");
+  EXPECT_EQ(refused({"--server", "--headless"}, false).field, "--server");
+  EXPECT_EQ(refused({"--server", "http://"}, false).field, "--server");
 }
 
 TEST(ViewOptions, HelpExplainsEveryFlagAndEveryKey) {
@@ -170,6 +184,7 @@ TEST(ViewOptions, HelpExplainsEveryFlagAndEveryKey) {
                            "--explain",
                            "--hud",
                            "--version",
+                           "Exit status",
                            "F1",
                            "F2",
                            "F3",
@@ -195,14 +210,37 @@ TEST(ViewProgram, VersionIsOneLineOnStdout) {
   EXPECT_EQ(outcome.output.rfind("terrane-view ", 0), 0u) << outcome.output;
 }
 
-TEST(ViewProgram, AFlightThatIsNoFileIsNamed) {
+TEST(ViewProgram, WhatTurnsOutToBeWrongLaterIsNamedByItsFlagOnceWithItsStatus) {
   const testing_support::RunningServer server("smooth");
   ASSERT_FALSE(server.url.empty());
-  const auto outcome = testing_support::runView(
-      {"--server", server.url, "--headless", "--size", "64x36", "--flight", "/no/such/flight"});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(testing_support::lineCount(outcome.errors), 1u) << outcome.errors;
-  EXPECT_NE(outcome.errors.find("--flight"), std::string::npos) << outcome.errors;
+  struct Late {
+    std::string flag, value;
+    int status;
+  };
+  for (const Late& late : {Late{"--flight", "/no/such/flight", 2}, Late{"--flight", "/dev/null", 2},
+                           Late{"--body", "mars", 2}, Late{"--capture", "/no/such/folder/a.png", 1},
+                           Late{"--stats", "/no/such/folder/a.json", 1}, Late{"--cache", "/dev/null/tiles", 1}}) {
+    const auto outcome =
+        testing_support::runView({"--server", server.url, "--headless", "--size", "64x36", late.flag, late.value});
+    EXPECT_EQ(outcome.status, late.status) << outcome.errors;
+    EXPECT_EQ(testing_support::lineCount(outcome.errors), 1u) << outcome.errors;
+    EXPECT_EQ(outcome.errors.rfind("terrane-view: " + late.flag + ": ", 0), 0u) << outcome.errors;
+    EXPECT_EQ(outcome.errors.find(late.flag), outcome.errors.rfind(late.flag)) << outcome.errors;
+    EXPECT_NE(outcome.errors.find(late.value), std::string::npos) << outcome.errors;
+  }
+}
+
+TEST(ViewSession, OnlyACacheThatWasAskedForHasToBe) {
+  ViewOptions options = parsed({"--cache", "/dev/null/tiles"});
+  const auto asked = ViewSession::open(options, nullptr);
+  ASSERT_FALSE(asked);
+  EXPECT_EQ(asked.error().field, "--cache");
+  options.cacheIsDefault = true;
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(ViewSession::open(options, nullptr));
+  const std::string warning = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(testing_support::lineCount(warning), 1u) << warning;
+  EXPECT_NE(warning.find("/dev/null/tiles"), std::string::npos) << warning;
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ TEST_F(Viewer, AFrameBudgetRaisesTheErrorThatAFrameIsDrawnWith) {
 
 TEST_F(Viewer, AnUnknownBodyIsNamedWithThoseThatThereAre) {
   const auto outcome = view({"--body", "mars"});
-  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(lineCount(outcome.errors), 1u) << outcome.errors;
   EXPECT_NE(outcome.errors.find("--body"), std::string::npos) << outcome.errors;
   EXPECT_NE(outcome.errors.find("moon"), std::string::npos) << outcome.errors;

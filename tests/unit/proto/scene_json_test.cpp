@@ -86,13 +86,15 @@ TEST(SceneJson, KeepsEveryBitOfADouble) {
 
 TEST(SceneJson, AnOldViewerOpensANewerServersScene) {
   nlohmann::json json = document();
-  json["effects"].push_back({{"name", "aurora"}, {"parameters", {{"brightness", 2}}}});
+  for (const char* name : {"aurora", "sn\now", "aurora"})
+    json["effects"].push_back({{"name", name}, {"parameters", {{"brightness", 2}}}});
   json["effects"][0]["parameters"]["colour"] = "red";
   json["effects"][0]["parameters"].erase("latitude");
   json["limits"] = {{"tiles", 5}};
   json["bodies"][0]["atmosphere"] = nullptr;
   const auto read = readSceneJson(json.dump());
   ASSERT_TRUE(read.has_value()) << read.error().text();
+  EXPECT_EQ(read->unknownEffects, (std::vector<std::string>{"aurora", "sn\now"}));
   ASSERT_EQ(read->effects.size(), 1u);
   EXPECT_EQ(read->effects[0].parameters.count("colour"), 0u);
   EXPECT_EQ(read->effects[0].parameters.count("latitude"), 1u) << "absent settings have their defaults";
