@@ -56,9 +56,12 @@ struct TileStream::State {
   std::vector<std::shared_ptr<const SceneInfo>> scenes;  ///< the last is in force
   bool sceneFromCache = false, cacheOffered = false;
   bool sceneStale = false;  ///< the server has said that our revision is gone
+  bool sceneDoubted =
+      false;  ///< the server does not know a tile of ours: its scene is asked for, it may be another now
   bool bodyMissing = false;
   bool wantDue = false;  ///< a new revision is in force, and nobody has said yet what is wanted of it
-  int sameRevisionAgain = 0;
+  int sameRevisionAgain = 0, doubts = 0;
+  Clock::time_point askSceneAt{};  ///< for its doubt
   const BodyInfo* body = nullptr;
 
   std::unordered_map<FacePath, Request> requests;
@@ -94,15 +97,29 @@ struct TileStream::State {
         requests.at(found->second).stage = Request::Stage::Failed;
         ++failed;
         lastFailure = lost.error.text();
+        if (lost.error.kind == ErrorKind::NotFound) doubtScene();
       }
       orders.erase(found);
     }
+    if (sceneDoubted && Clock::now() >= askSceneAt) loader->load();
+  }
+
+  milliseconds backoff(int times) const {
+    return std::min(options.longestBackoff, options.firstBackoff * (1 << std::min(times, 16)));
+  }
+
+  /// The first time at once, then less and less often, however many tiles are not found.
+  void doubtScene() {
+    if (sceneStale || std::exchange(sceneDoubted, true)) return;
+    askSceneAt = Clock::now() + (doubts == 0 ? milliseconds(0) : backoff(doubts - 1));
+    ++doubts;
   }
 
   void adoptScene(SceneLoader::Arrival arrival) {
     const std::string name = body ? body->name : "";
     const std::string oldRevision = body ? body->revision : "";
     sceneFromCache = arrival.fromCache;
+    sceneDoubted = false;
     scenes.push_back(std::move(arrival.scene));
     if (!body) return;
     const auto& bodies = scenes.back()->bodies;
@@ -114,7 +131,7 @@ struct TileStream::State {
     }
     body = &*found;
     if (body->revision != oldRevision) {
-      sameRevisionAgain = 0;
+      sameRevisionAgain = doubts = 0;
       sceneStale = false;
       wantDue = true;
       residency.setRevision(body->revision);
@@ -122,8 +139,7 @@ struct TileStream::State {
       forgetFailures();
     } else if (sceneStale) {
       // Something between us and the server still holds the old scene. Ask again, less and less often.
-      const int doublings = std::min(sameRevisionAgain++, 16);
-      loader->load(std::min(options.longestBackoff, options.firstBackoff * (1 << doublings)));
+      loader->load(backoff(sameRevisionAgain++));
     }
   }
 
@@ -230,7 +246,7 @@ struct TileStream::State {
 
   bool idle() {
     drain();
-    if (scenes.empty() || sceneStale || wantDue) return false;
+    if (scenes.empty() || sceneStale || sceneDoubted || wantDue) return false;
     const auto counts = pipeline->counts();
     return counts.orders == 0 && counts.lost == 0 && uploading == 0;
   }

@@ -12,9 +12,9 @@
 // loading, behind all that is wanted, for kGraceCalls calls of want() or graceTime, whichever ends first; what was
 // wanted that recently is not evicted.
 //
-// When the server says that the revision is gone, scene() becomes another scene and every tile is asked for again as it
-// is wanted; the old ones stay resident and drawn until their successors are. Without a server the disk cache's scene
-// and tiles are used.
+// When the server says that the revision is gone, or does not find a tile and has another revision, scene() becomes
+// another scene and every tile is asked for again as it is wanted; the old ones stay resident and drawn until their
+// successors are. Without a server the disk cache's scene and tiles are used.
 //
 // All members are for one thread (the GL thread), except where they say otherwise.
 

@@ -129,6 +129,7 @@ TEST(TileStreamTrouble, WhatCannotBeHadIsAskedForOnceAndNamed) {
     ASSERT_TRUE(viewer.settle(chain(path("cube/0/12"))));
     for (int i = 0; i < 100; ++i) viewer.frame(chain(path("cube/0/12")));
     EXPECT_EQ(world.asked("/cube/0/1.glb"), 1);
+    EXPECT_EQ(world.asked("scene.json"), status == 404 ? 2 : 1) << "another scene would explain a 404";
     EXPECT_TRUE(viewer.stream().idle());
     const StreamStatus state = viewer.stream().status();
     EXPECT_EQ(state.failed, 1u);
@@ -188,6 +189,44 @@ TEST(TileStreamTrouble, AGoneRevisionMovesOverWithoutAHole) {
   EXPECT_EQ(viewer.stream().status().resident, after.size());
   EXPECT_EQ(viewer.uploads, static_cast<int>(before.size() + after.size()));
   EXPECT_THAT(viewer.stream().status().message, IsEmpty());
+}
+
+TEST(TileStreamTrouble, ANewSceneIsFoundWhenTheServerKnowsNothingOfTheOldOne) {
+  RunningWorld world;
+  SmallViewer viewer(quickOptions(world.url()));
+  ASSERT_TRUE(viewer.waitForScene());
+  ASSERT_TRUE(viewer.settle(chain(path("cube/0/01"))));
+  world.setRevision(kNextRevision);
+  world.setRule([](const std::string&, const FakeReply& usual) {
+    return usual.status == 410 ? FakeReply{.status = 404} : usual;
+  });
+  const auto after = together({chain(path("cube/0/01")), chain(path("cube/0/03"))});
+  ASSERT_TRUE(viewer.settle(after));
+  EXPECT_EQ(viewer.stream().body()->revision, kNextRevision);
+  EXPECT_EQ(viewer.stream().status().failed, 0u);
+  EXPECT_TRUE(viewer.stream().resident(path("cube/0/03")));
+  EXPECT_EQ(world.asked("scene.json"), 2);
+  EXPECT_THAT(viewer.stream().status().message, IsEmpty());
+}
+
+TEST(TileStreamTrouble, ManyTilesThatAreNotFoundAreNoStormOfScenes) {
+  RunningWorld world([](const std::string& target, const FakeReply& usual) {
+    return target.ends_with(".glb") ? FakeReply{.status = 404} : usual;
+  });
+  StreamOptions options = quickOptions(world.url());
+  options.firstBackoff = options.longestBackoff = 1h;
+  SmallViewer viewer(options);
+  ASSERT_TRUE(viewer.waitForScene());
+  ASSERT_TRUE(viewer.settle(chain(path("cube/0")))) << "the first is asked for at once";
+  std::size_t failures = 1;
+  for (const char* leaf : {"cube/1/01", "cube/2/02", "cube/3/03", "cube/4/012"}) {
+    const auto wanted = chain(path(leaf));
+    failures += wanted.size();
+    ASSERT_TRUE(viewer.stepUntil(wanted, [&] { return viewer.stream().status().failed == failures; })) << leaf;
+  }
+  for (int i = 0; i < 100; ++i) viewer.frame(chain(path("cube/4/012")));
+  EXPECT_EQ(world.asked("scene.json"), 2);
+  EXPECT_EQ(world.tilesAsked(), static_cast<int>(failures)) << "nor is a tile asked for twice";
 }
 
 TEST(TileStreamTrouble, ABodyIsFollowedByNameWhereverANewSceneListsIt) {
