@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "common/command_line.h"
+#include "common/memory/heap_policy.h"
 #include "common/scene/scene.h"
-#include "server/build/heap_policy.h"
 #include "server/explain.h"
 #include "server/http/http_server.h"
 #include "server/http/tile_service.h"
@@ -70,7 +70,7 @@ void watchSignals(HttpServer* server, TileService* service) {
 }
 
 int serve(const Scene& scene, const ServerSettings& settings) {
-  keepFreedMemory();
+  keepFreedMemory(kHeapKeptByServer);
   raiseDescriptorLimit(settings.http.maxConnections);
   // Blocked before any thread starts, so that only sigwait sees them.
   const sigset_t signals = endingSignals();

@@ -12,6 +12,7 @@
 #include "client/app/view_options.h"
 #include "client/gl/window.h"
 #include "common/command_line.h"
+#include "common/memory/heap_policy.h"
 
 namespace terrane {
 namespace {
@@ -47,6 +48,7 @@ int runViewProgram(int argc, char** argv) {
       fmt::print("{}", text->text);
       return kExitDone;
     }
+    keepFreedMemory(kHeapKeptByViewer);
     return view(std::get<ViewOptions>(*parsed), start);
   } catch (const std::exception& error) {  // the last edge: out of memory, or a bug
     return fail(makeError(ErrorKind::Internal, "", error.what()), kExitFailed);

@@ -19,9 +19,9 @@
 namespace terrane {
 namespace {
 
-/// Software GL sorts a frame's triangles into bins before it draws any of them: tens of megabytes, and one core idle.
-/// Told to begin after so many tiles, it draws some while it sorts the next, in a fifth of the memory. (A GPU is not
-/// told: one that draws by screen tiles would pay for it.)
+/// Software GL sorts a frame's triangles into bins before it draws any of them. Told to begin after so many tiles, it
+/// draws some while it sorts the next, and needs some tens of megabytes less. (A GPU is not told: one that draws by
+/// screen tiles would pay for it.)
 constexpr int kTilesPerFlush = 16;
 
 /// Hues a golden angle apart, so that neighbouring levels differ.

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/build/heap_policy.h"
+#include "common/memory/heap_policy.h"
 #include "server/build/tile_builder.h"
 #include "server/scenes/scene_file.h"
 #include "tests/bench/stock_draco.h"
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
     if (flag == "--tiles" && i + 1 < argc) tiles = std::max(1, std::atoi(argv[i + 1]));
     if (flag == "--scene" && i + 1 < argc) sceneName = argv[i + 1];
   }
-  if (!defaultHeap) keepFreedMemory();
+  if (!defaultHeap) keepFreedMemory(kHeapKeptByServer);
   const auto scene = loadScene(sceneName);
   if (!scene) {
     fmt::print(stderr, "bench_tile_build: {}\n", scene.error().text());

@@ -1,5 +1,6 @@
 // A viewer's frame (select, place, draw) beside a bare loop that draws the same triangles into the same target, in
-// turn, in one run, at three views of the Moon. Usage: bench_viewer [--frames N]; prints a Markdown table of medians.
+// turn, in one run, at three views of the Moon. Usage: bench_viewer [--frames N] [--default-heap]; prints a Markdown
+// table of medians.
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "client/gl/render_target.h"
 #include "client/gl/window.h"
 #include "client/render/tile_renderer.h"
+#include "common/memory/heap_policy.h"
 #include "common/tiling/cube_sphere.h"
 #include "common/view/tile_selection.h"
 #include "proto/gltf_tile.h"
@@ -120,9 +122,13 @@ void measureView(const char* name, const ViewPose& pose, const TileBuilder& buil
 
 int main(int argc, char** argv) {
   int frames = 60;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::string_view(argv[i]) == "--frames") frames = std::max(3, std::atoi(argv[i + 1]));
+  bool defaultHeap = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view flag = argv[i];
+    if (flag == "--default-heap") defaultHeap = true;
+    if (flag == "--frames" && i + 1 < argc) frames = std::max(3, std::atoi(argv[++i]));
   }
+  if (!defaultHeap) keepFreedMemory(kHeapKeptByViewer);
   const auto scene = loadScene("moon");
   const auto window = Window::open({kWidth, kHeight, "bench", true});
   if (!scene || !window) {
