@@ -22,7 +22,7 @@ namespace {
 /// Software GL sorts a frame's triangles into bins before it draws any of them. Told to begin after so many tiles, it
 /// draws some while it sorts the next, and needs some tens of megabytes less. (A GPU is not told: one that draws by
 /// screen tiles would pay for it.)
-constexpr int kTilesPerFlush = 16;
+constexpr int kTilesPerFlush = 8;
 
 /// Hues a golden angle apart, so that neighbouring levels differ.
 glm::vec3 levelTint(int level) {

@@ -14,6 +14,6 @@ void keepFreedMemory(std::size_t mostBytes) noexcept;
 /// Some megabytes a tile, a thread.
 inline constexpr std::size_t kHeapKeptByServer = 16u << 20;
 /// A frame's triangles, and what decoding leaves.
-inline constexpr std::size_t kHeapKeptByViewer = 64u << 20;
+inline constexpr std::size_t kHeapKeptByViewer = 48u << 20;
 
 }  // namespace terrane

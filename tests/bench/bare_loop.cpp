@@ -122,7 +122,7 @@ void BareLoop::draw() const {
   for (const Mesh& mesh : meshes_) {
     glBindVertexArray(mesh.vertexArray);
     glDrawElements(GL_TRIANGLES, mesh.indexCount, GL_UNSIGNED_SHORT, nullptr);
-    if (++drawn % 16 == 0) glFlush();  // as the viewer does on software GL
+    if (++drawn % 8 == 0) glFlush();  // as the viewer does on software GL
   }
   glBindVertexArray(0);
 }
