@@ -1,9 +1,25 @@
 #include "common/command_line.h"
 
+#include <cstdio>
+
 namespace terrane {
 
 int exitStatus(const Error& error) noexcept {
   return error.kind == ErrorKind::InvalidArgument ? kExitWrongUsage : kExitFailed;
+}
+
+void complain(std::string_view program, std::string_view text) noexcept {
+  std::fprintf(stderr, "%.*s: ", static_cast<int>(program.size()), program.data());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    // In UTF-8 the control characters from U+0080 on are C2 80 .. C2 9F.
+    const bool secondControls = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    if (byte < 0x20 || byte == 0x7F || secondControls)
+      std::fprintf(stderr, "\\x%02x", byte);
+    else
+      std::fputc(text[i], stderr);
+  }
+  std::fputc('\n', stderr);
 }
 
 Result<void> checkFlagValues(std::span<const std::string> words,

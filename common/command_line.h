@@ -20,6 +20,9 @@ inline constexpr const char* kExitStatusHelp =
 /// kExitWrongUsage for InvalidArgument, kExitFailed for everything else.
 int exitStatus(const Error& error) noexcept;
 
+/// "program: text" as one line on stderr: control characters escaped, and lost where nothing can be written.
+void complain(std::string_view program, std::string_view text) noexcept;
+
 /// Before a parser takes the words (without the program's name): a flag that needs a value must not be followed by
 /// another flag, which would be taken for the value, nor by nothing at all as in --flag="". What begins with one dash
 /// only is a value: longitudes are negative. Errors: InvalidArgument naming the flag.

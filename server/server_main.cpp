@@ -29,7 +29,7 @@ namespace {
 
 /// One line to stderr, and the exit status.
 int complain(const std::string& text, int status) {
-  fmt::print(stderr, "terrane-server: {}\n", text);
+  terrane::complain("terrane-server", text);
   return status;
 }
 
@@ -104,9 +104,10 @@ int run(int argc, char** argv) {
   spdlog::set_level(spdlog::level::from_str(settings.logLevel));
 
   const Result<Scene> scene = loadScene(settings.scene);
-  if (!scene) {  // a scene file's error says file, line and key by itself
+  if (!scene) {  // what is wrong within a scene file says file, line and key by itself
     const Error& error = scene.error();
-    const std::string text = error.field == "--scene" ? settings.sceneSource + ": " + error.message : error.message;
+    const bool notRead = error.field == "--scene" || error.kind == ErrorKind::NotFound || error.kind == ErrorKind::Io;
+    const std::string text = notRead ? settings.sceneSource + ": " + error.message : error.message;
     return complain(text, kExitWrongUsage);
   }
   if (settings.check) {
@@ -126,7 +127,7 @@ int main(int argc, char** argv) {
   try {
     return terrane::run(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "terrane-server: %s\n", error.what());
+    terrane::complain("terrane-server", error.what());
     return terrane::kExitFailed;
   }
 }

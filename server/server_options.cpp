@@ -201,7 +201,9 @@ Result<std::vector<std::string>> wordsOf(const ConfigEntry& entry) {
   std::vector<std::string> words;
   if (flags.needsValue(flag)) {
     for (const std::string& value : entry.values) words.push_back(flag + "=" + value);
-  } else if (entry.values.size() != 1 || (entry.values[0] != "true" && entry.values[0] != "false")) {
+  } else if (entry.values.size() != 1) {
+    return makeError(ErrorKind::InvalidArgument, flag, "a switch takes one value; allowed: true, false");
+  } else if (entry.values[0] != "true" && entry.values[0] != "false") {
     return makeError(ErrorKind::InvalidArgument, flag,
                      quotedForMessage(entry.values[0]) + " is no value of a switch; allowed: true, false");
   } else if (entry.values[0] == "true") {

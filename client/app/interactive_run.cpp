@@ -320,7 +320,7 @@ int runInteractive(const ViewOptions& options, Window& window, Clock::time_point
   InteractiveRun run(options, window, start);
   const Done done = run.run();
   if (done) return kExitDone;
-  fmt::print(stderr, "terrane-view: {}\n", done.error().text());
+  complain("terrane-view", done.error().text());
   return exitStatus(done.error());
 }
 

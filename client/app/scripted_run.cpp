@@ -256,7 +256,7 @@ int runScripted(const ViewOptions& options, Window& window, Clock::time_point st
   ScriptedRun run(options, window, start);
   const Done done = run.run();
   if (done) return kExitDone;
-  fmt::print(stderr, "terrane-view: {}\n", done.error().text());
+  complain("terrane-view", done.error().text());
   return exitStatus(done.error());
 }
 

@@ -23,7 +23,7 @@ std::string environmentVariable(const char* name) {
 }
 
 int fail(const Error& error, int status) {
-  fmt::print(stderr, "terrane-view: {}\n", error.text());
+  complain("terrane-view", error.text());
   return status;
 }
 

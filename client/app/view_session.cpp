@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "client/controls/camera_controls.h"
+#include "common/command_line.h"
 #include "common/tiling/cube_sphere.h"
 #include "common/view/level_of_detail.h"
 
@@ -34,7 +35,7 @@ void returnFreedMemory() {
 #endif
 }
 
-void warn(const std::string& text) { fmt::print(stderr, "terrane-view: warning: {}\n", text); }
+void warn(const std::string& text) { complain("terrane-view", "warning: " + text); }
 
 std::uint32_t gridIndex(double coordinate, int level) {
   const double cells = static_cast<double>(std::uint64_t{1} << level);

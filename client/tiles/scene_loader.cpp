@@ -65,7 +65,11 @@ struct SceneLoader::State : std::enable_shared_from_this<State> {
   void deliver(SceneInfo scene, const std::vector<std::uint8_t>& text) {
     {
       const std::lock_guard lock(mutex);
-      arrival = {std::make_shared<const SceneInfo>(std::move(scene)), false};
+      if (!lastScene || lastText != text) {
+        lastText = text;
+        lastScene = std::make_shared<const SceneInfo>(std::move(scene));
+      }
+      arrival = {lastScene, false};
       delivered = true;
       loading = false;
       failures = 0;
@@ -113,6 +117,8 @@ struct SceneLoader::State : std::enable_shared_from_this<State> {
   bool delivered = false;  ///< a scene, from wherever, has been offered
   int failures = 0;
   Arrival arrival;
+  std::vector<std::uint8_t> lastText;  ///< the server's last, and what it says
+  std::shared_ptr<const SceneInfo> lastScene;
   std::string trouble;
 };
 

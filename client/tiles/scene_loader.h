@@ -27,7 +27,7 @@ class SceneLoader {
   void offerCached();
 
   struct Arrival {
-    std::shared_ptr<const SceneInfo> scene;  ///< null if nothing new
+    std::shared_ptr<const SceneInfo> scene;  ///< null if none came; the same as before if it says the same
     bool fromCache = false;
   };
   Arrival take();

@@ -55,13 +55,11 @@ struct TileStream::State {
 
   std::vector<std::shared_ptr<const SceneInfo>> scenes;  ///< the last is in force
   bool sceneFromCache = false, cacheOffered = false;
-  bool sceneStale = false;  ///< the server has said that our revision is gone
-  bool sceneDoubted =
-      false;  ///< the server does not know a tile of ours: its scene is asked for, it may be another now
+  bool sceneStale = false;    ///< the server has said that our revision is gone
+  bool sceneDoubted = false;  ///< a tile was not found: the server's scene, which may be another, is asked for
   bool bodyMissing = false;
   bool wantDue = false;  ///< a new revision is in force, and nobody has said yet what is wanted of it
   int sameRevisionAgain = 0, doubts = 0;
-  Clock::time_point askSceneAt{};  ///< for its doubt
   const BodyInfo* body = nullptr;
 
   std::unordered_map<FacePath, Request> requests;
@@ -101,18 +99,19 @@ struct TileStream::State {
       }
       orders.erase(found);
     }
-    if (sceneDoubted && Clock::now() >= askSceneAt) loader->load();
   }
 
   milliseconds backoff(int times) const {
     return std::min(options.longestBackoff, options.firstBackoff * (1 << std::min(times, 16)));
   }
 
-  /// The first time at once, then less and less often, however many tiles are not found.
+  /// A tile is not found: is there another scene? Asked at once the first time, and only that is waited for; then less
+  /// and less often, however many tiles are not found, for as long as any is.
   void doubtScene() {
-    if (sceneStale || std::exchange(sceneDoubted, true)) return;
-    askSceneAt = Clock::now() + (doubts == 0 ? milliseconds(0) : backoff(doubts - 1));
+    if (sceneStale || doubts > 0) return;
+    sceneDoubted = true;
     ++doubts;
+    loader->load();
   }
 
   void adoptScene(SceneLoader::Arrival arrival) {
@@ -120,17 +119,17 @@ struct TileStream::State {
     const std::string oldRevision = body ? body->revision : "";
     sceneFromCache = arrival.fromCache;
     sceneDoubted = false;
-    scenes.push_back(std::move(arrival.scene));
+    if (scenes.empty() || scenes.back() != arrival.scene) scenes.push_back(std::move(arrival.scene));
     if (!body) return;
     const auto& bodies = scenes.back()->bodies;
     const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const BodyInfo& b) { return b.name == name; });
-    bodyMissing = found == bodies.end();
+    const bool wasMissing = std::exchange(bodyMissing, found == bodies.end());
     if (bodyMissing) {
       cancelOrders();
-      return;
+      return loader->load(backoff(sameRevisionAgain++));  // it may come back
     }
     body = &*found;
-    if (body->revision != oldRevision) {
+    if (body->revision != oldRevision || wasMissing) {
       sameRevisionAgain = doubts = 0;
       sceneStale = false;
       wantDue = true;
@@ -140,6 +139,10 @@ struct TileStream::State {
     } else if (sceneStale) {
       // Something between us and the server still holds the old scene. Ask again, less and less often.
       loader->load(backoff(sameRevisionAgain++));
+    } else if (doubts > 0 && failed > 0) {
+      loader->load(backoff(doubts++ - 1));
+    } else {
+      doubts = 0;
     }
   }
 
@@ -168,6 +171,7 @@ struct TileStream::State {
     residency.clear();
     uploading = failed = 0;
     sceneStale = bodyMissing = false;
+    doubts = 0;
     lastFailure.clear();
   }
 

@@ -25,6 +25,7 @@ class ConfigReader {
 
   Result<std::vector<ConfigEntry>> read() {
     std::vector<ConfigEntry> entries;
+    if (rest_.starts_with("\xEF\xBB\xBF")) skip(3);  // a byte order mark
     for (skipLines(); !rest_.empty(); skipLines()) {
       ConfigEntry entry;
       key_.clear();
@@ -108,6 +109,8 @@ class ConfigReader {
       const std::size_t end = rest_.find_first_of(quote == '"' ? "\"\n" : "'\n", 1);
       if (end == std::string_view::npos || rest_[end] == '\n') return fail("the quotes do not end");
       value = rest_.substr(1, end - 1);
+      if (quote == '"' && value.find('\\') != value.npos)
+        return fail("a backslash has no meaning between these quotes; allowed: '...'");
       skip(end + 1);
     } else {
       value = rest_.substr(0, rest_.find_first_of(ends));

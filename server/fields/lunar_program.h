@@ -98,7 +98,7 @@ enum class FeatureStage : std::uint8_t { OldCrater, YoungCrater, Rock };
 /// A rock is (1 - s^2)^2 of its height at s = (distance / radius)^2, with a flank a quarter of its radius wide. A level
 /// too coarse for the flank shows the dome (1 - s)^2 instead, or the light would break into teeth along the foot: 0
 /// (dome, up to a radius of twice minWavelength) .. 1 (rock, from eight times on). Between the two lies at most
-/// kDomeGap of the height: s (2 + s) (1 - s)^2 is 0.3477 at 0.39.
+/// kDomeGap of the height: s (2 + s) (1 - s)^2 is 0.3481 at 0.366.
 [[gnu::always_inline]] inline double rockSteepness(double radius, double minWavelength) noexcept {
   return shownShare(0.5 * radius, minWavelength);
 }

@@ -229,8 +229,8 @@ Result<Tcp::endpoint> resolve(const ListenAddress& wanted, net::io_context& cont
   Tcp::resolver resolver(context);
   const auto found = resolver.resolve(wanted.host, std::to_string(wanted.port), Tcp::resolver::passive, failure);
   if (failure || found.empty())
-    return makeError(ErrorKind::InvalidArgument, "--listen",
-                     fmt::format("\"{}\" is no address of this machine: {}", wanted.host, failure.message()));
+    return makeError(ErrorKind::Io, "--listen",
+                     fmt::format("\"{}\" cannot be resolved: {}", wanted.host, failure.message()));
   for (const auto& entry : found)
     if (entry.endpoint().address().is_v4()) return entry.endpoint();
   return found.begin()->endpoint();

@@ -34,7 +34,8 @@ TEST(ConfigFile, FlagsHaveValuesInQuotesOrWithoutListsAndLines) {
 }
 
 TEST(ConfigFile, AnEmptyFileSetsNothing) {
-  for (const char* text : {"", "\n", "  ", "# only this", "\r\n; and\n"}) EXPECT_TRUE(parseConfig(text, "f")->empty());
+  for (const char* text : {"", "\n", "  ", "# only this", "\r\n; and\n", "\xEF\xBB\xBF# a mark"})
+    EXPECT_TRUE(parseConfig(text, "f")->empty());
 }
 
 TEST(ConfigFile, WhatIsWrongHasFileLineAndKeyInOnePrintableLine) {
@@ -48,6 +49,7 @@ TEST(ConfigFile, WhatIsWrongHasFileLineAndKeyInOnePrintableLine) {
       {"\n\nscene = \"moon\n", "f:3: scene: the quotes"},
       {"scene = \"moon\" 7", "f:1: scene: something follows"},
       {"scene = \"\x1b[31m\"", "f:1: scene: a control character"},
+      {"scene = \"mo\\u006fn\"", "f:1: scene: a backslash has no meaning"},
       {"listen = []", "f:1: listen: the list is empty"},
       {"listen = [\"a\"\n", "f:2: listen: the list does not end"},
       {"listen = [", "f:1: listen: the list does not end"},
