@@ -10,6 +10,18 @@ function(terrane_library name)
   target_link_libraries(${name} PUBLIC terrane::flags ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
 endfunction()
 
+# Headers that nearly every test includes are read once for all test programs: a third of what a test takes to compile.
+function(terrane_precompile_test_headers name)
+  get_property(donor GLOBAL PROPERTY TERRANE_TEST_HEADERS)
+  if(donor)
+    target_precompile_headers(${name} REUSE_FROM ${donor})
+    return()
+  endif()
+  set_property(GLOBAL PROPERTY TERRANE_TEST_HEADERS ${name})
+  target_precompile_headers(${name} PRIVATE <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <chrono> <cmath> <functional> <map> <memory>
+    <random> <string> <thread> <vector> <glm/glm.hpp> <fmt/format.h> <boost/system/result.hpp>)
+endfunction()
+
 # A test program is a folder under tests/. Its cases are listed one by one in ctest, under the given label.
 function(terrane_test name)
   cmake_parse_arguments(ARG "" "FOLDER;LABEL;TIMEOUT" "LIBRARIES;DEFINITIONS" ${ARGN})
@@ -22,6 +34,7 @@ function(terrane_test name)
   endif()
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
+  terrane_precompile_test_headers(${name})
   target_compile_definitions(${name} PRIVATE TERRANE_SOURCE_DIR="${CMAKE_SOURCE_DIR}" TERRANE_BINARY_DIR="${CMAKE_BINARY_DIR}" ${ARG_DEFINITIONS})
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
 endfunction()
