@@ -9,9 +9,9 @@ port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0));
 
 block() {  # the sh block after <!-- commands:NAME -->
   awk -v marker="<!-- commands:$1 -->" '$0 == marker {found = 1; next} found && /^```sh$/ {inside = 1; next} inside && /^```$/ {exit} inside' README.md \
-    | sed -e "s#build/release/bin#$bin#g" -e "s#:8080#:$port#g" -e "s#/tmp/moon#$work/moon#g"
+    | sed -e "s#build/release/bin#$bin#g" -e "s#:8080#:$port#g" -e "s#/tmp/moon#$work/moon#g" -e "s#/tmp/accuracy#$work/accuracy#g"
 }
-for name in serve ask view; do
+for name in serve ask view accuracy; do
   [ -n "$(block "$name")" ] || { echo "README has no commands:$name block" >&2; exit 1; }
 done
 
@@ -37,4 +37,7 @@ assert stats["tilesDrawn"] > 0
 PY
 kill -TERM "$server"
 wait "$server"
+block accuracy >"$work/accuracy.sh"
+bash -euo pipefail "$work/accuracy.sh" >/dev/null
+grep -q "</html>" "$work/accuracy/index.html"
 echo "README's commands work"

@@ -1,0 +1,100 @@
+// What terrane-accuracy writes: complete, the same in every run but for times, and safe to open.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/accuracy/plot_svg.h"
+#include "tests/accuracy/report_text.h"
+
+namespace terrane::accuracy {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class Silent final : public Progress {
+ public:
+  void at(double share) override {
+    EXPECT_GE(share, last_);
+    EXPECT_LE(share, 1.0);
+    last_ = share;
+  }
+
+ private:
+  double last_ = 0;
+};
+
+Report runQuickly(const Experiment& experiment) {
+  Silent progress;
+  return experiment.run({.quick = true}, progress);
+}
+
+bool isTime(const Column& column) { return column.key.starts_with("time"); }
+
+TEST(Accuracy, EveryExperimentIsNamedOnceAndFillsItsTable) {
+  std::set<std::string_view> names;
+  for (const Experiment& experiment : experiments()) {
+    EXPECT_TRUE(names.insert(experiment.name).second) << experiment.name;
+    EXPECT_FALSE(experiment.question.empty()) << experiment.name;
+    const Report report = runQuickly(experiment);
+    EXPECT_FALSE(report.rows.empty()) << experiment.name;
+    EXPECT_FALSE(report.findings.empty()) << experiment.name;
+    for (const auto& row : report.rows) EXPECT_EQ(row.size(), report.columns.size()) << experiment.name;
+    for (const Plot& plot : report.plots) EXPECT_THAT(plotSvg(plot, report), HasSubstr("<circle")) << plot.title;
+  }
+  EXPECT_GE(names.size(), 5u);
+}
+
+TEST(Accuracy, ASecondRunGivesTheSameErrorsToTheLastDigit) {
+  for (const Experiment& experiment : experiments()) {
+    const Report first = runQuickly(experiment), second = runQuickly(experiment);
+    ASSERT_EQ(first.rows.size(), second.rows.size());
+    for (std::size_t r = 0; r < first.rows.size(); ++r) {
+      for (std::size_t c = 0; c < first.columns.size(); ++c) {
+        if (isTime(first.columns[c])) continue;
+        EXPECT_EQ(first.rows[r][c], second.rows[r][c]) << experiment.name << " row " << r;
+      }
+    }
+  }
+}
+
+Finished sample() {
+  Report report;
+  report.columns = {{"name", "name"}, {"size", "size, m"}, {"timeNs", "time, ns"}};
+  report.rows = {{std::string("a <b> & 'c'"), 0.1 + 0.2, std::int64_t{7}}, {std::string("é"), 0.0, std::int64_t{9}}};
+  report.plots = {{"size over time", "timeNs", "size", "name"}};
+  report.findings = {"it is < 1"};
+  return {{1, "sample", "A sample", "What?", nullptr}, report};
+}
+
+TEST(Accuracy, JsonKeepsEveryDigitAndTellsTimesApart) {
+  const auto document = nlohmann::json::parse(jsonOf({}, {sample()}));
+  const auto& experiment = document.at("experiments").at(0);
+  EXPECT_EQ(experiment.at("name"), "sample");
+  EXPECT_EQ(experiment.at("rows").at(0).at("size").get<double>(), 0.1 + 0.2);
+  EXPECT_EQ(experiment.at("rows").at(1).at("timeNs"), 9);
+}
+
+TEST(Accuracy, ThePageNeedsNothingElseAndTakesNoTextForMarkup) {
+  const std::string page = htmlOf({}, {sample()});
+  for (const char* reference : {"src=", "http", "@import", "url("}) EXPECT_THAT(page, Not(HasSubstr(reference)));
+  EXPECT_THAT(page, Not(HasSubstr("<b>")));
+  EXPECT_THAT(page, HasSubstr("a &lt;b&gt; &amp; &#39;c&#39;"));
+  EXPECT_THAT(page, HasSubstr("1 points have no place")) << "0 on a logarithmic axis";
+}
+
+TEST(Accuracy, NumbersShowFourDigits) {
+  EXPECT_EQ(shown(0.0), "0");
+  EXPECT_EQ(shown(1.0), "1.000");
+  EXPECT_EQ(shown(1234.56), "1235");
+  EXPECT_EQ(shown(1.5e-7), "1.50e-07");
+  EXPECT_EQ(shown(std::int64_t{123456789}), "123456789");
+  EXPECT_EQ(shown(INFINITY), "inf");
+}
+
+}  // namespace
+}  // namespace terrane::accuracy
