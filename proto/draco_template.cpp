@@ -162,30 +162,34 @@ class DracoTemplate::Learner {
  public:
   static std::shared_ptr<const DracoTemplate> learn(const TileMesh& model, const DracoSettings& settings) {
     const TileMesh noise = noiseOn(model);
-    const Result<DracoBuffer> smoothBytes = encodeDraco(model, settings), noiseBytes = encodeDraco(noise, settings);
-    if (smoothBytes.has_error() || noiseBytes.has_error()) return nullptr;
+    const Result<DracoBuffer> smooth = encodeDraco(model, settings);
+    if (smooth.has_error()) return nullptr;
     const std::shared_ptr<DracoTemplate> learnt(new DracoTemplate);
     learnt->settings_ = settings;
     learnt->triangles_ = model.triangles;
     learnt->gridIndices_ = model.gridIndices;
     learnt->colors_ = !model.colors.empty();
-    learnt->ids_ = *smoothBytes;
+    learnt->ids_ = *smooth;
     learnt->ids_.bytes.clear();
-    if (!listen(noise, *learnt)) return nullptr;
-    for (const auto& [mesh, expected] : {std::pair{&model, &*smoothBytes}, std::pair{&noise, &*noiseBytes}}) {
-      const Result<DracoBuffer> encoded = learnt->encodeFitting(*mesh);
-      if (encoded.has_error() || encoded->bytes != expected->bytes) return nullptr;
-    }
+    std::vector<std::uint8_t> noiseBytes;
+    if (!listen(noise, *learnt, noiseBytes)) return nullptr;
+    const auto gives = [&](const TileMesh& mesh, const std::vector<std::uint8_t>& expected) {
+      const Result<DracoBuffer> encoded = learnt->encodeFitting(mesh);
+      return encoded.has_value() && encoded->bytes == expected;
+    };
+    if (!gives(model, smooth->bytes) || !gives(noise, noiseBytes)) return nullptr;
     return learnt;
   }
 
  private:
-  static bool listen(const TileMesh& mesh, DracoTemplate& out) {
+  /// stream: what libdraco wrote.
+  static bool listen(const TileMesh& mesh, DracoTemplate& out, std::vector<std::uint8_t>& stream) {
     const DracoInput input(mesh);
     ListeningEncoder encoder;
     draco::EncoderBuffer buffer;
     if (!input.encode(encoder, out.settings_, buffer)) return false;
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.data());
+    stream.assign(bytes, bytes + buffer.size());
     if (buffer.size() < encoder.headBytes + kTailBytes) return false;
     out.head_.assign(bytes, bytes + encoder.headBytes);
     out.tail_.assign(bytes + buffer.size() - kTailBytes, bytes + buffer.size());

@@ -6,9 +6,10 @@
 namespace terrane {
 
 /// Left to its defaults glibc gives freed memory back to the system each time, and getting it again costs up to half of
-/// what the work itself does: encoding a tile with Draco (bench_tile_build with and without --default-heap), or a frame
-/// of software GL, which sorts its triangles into tens of megabytes (bench_viewer, likewise). Keeps up to mostBytes at
-/// the top of each thread's heap instead. Call once, before any thread is started; does nothing with another C library.
+/// what encoding a tile with Draco does (bench_tile_build with and without --default-heap), and more than a frame of
+/// software GL does, which sorts its triangles into tens of megabytes (bench_viewer, likewise). Keeps up to mostBytes
+/// at the top of each thread's heap instead. Call once, before any thread is started; does nothing with another C
+/// library.
 void keepFreedMemory(std::size_t mostBytes) noexcept;
 
 /// Some megabytes a tile, a thread.

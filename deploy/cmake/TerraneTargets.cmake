@@ -10,7 +10,7 @@ function(terrane_library name)
   target_link_libraries(${name} PUBLIC terrane::flags ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
 endfunction()
 
-# Headers that nearly every test includes are read once for all test programs: a third of what a test takes to compile.
+# Headers that nearly every test includes are read once for all test programs.
 function(terrane_precompile_test_headers name)
   get_property(donor GLOBAL PROPERTY TERRANE_TEST_HEADERS)
   if(donor)

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <utility>
 
 #include "common/numerics/double_float.h"
 #include "tests/accuracy/experiment.h"
@@ -70,12 +71,8 @@ struct Placed {
 };
 
 template <class Vertex, class Camera, class Relative>
-Placed place(const Sample& sample, const std::function<Vertex(Units)>& encode, const std::function<Camera(Units)>& see,
-             Relative relative) {
-  auto vertices = std::make_shared<std::vector<Vertex>>();
-  for (const auto& vertex : sample.vertices)
-    for (const Units coordinate : vertex) vertices->push_back(encode(coordinate));
-  const std::array<Camera, 3> camera{see(sample.camera[0]), see(sample.camera[1]), see(sample.camera[2])};
+Placed placed(std::vector<Vertex> encoded, const std::array<Camera, 3>& camera, Relative relative) {
+  const auto vertices = std::make_shared<const std::vector<Vertex>>(std::move(encoded));
   return {[=](std::size_t i) { return relative((*vertices)[i], camera[i % 3]); },
           [=](std::size_t count) {
             const Vertex* v = vertices->data();
@@ -85,6 +82,16 @@ Placed place(const Sample& sample, const std::function<Vertex(Units)>& encode, c
                 sum += relative(v[i], camera[0]) + relative(v[i + 1], camera[1]) + relative(v[i + 2], camera[2]);
             return static_cast<double>(sum);
           }};
+}
+
+/// A scheme that encodes vertices and camera alike, each coordinate by itself.
+template <class Coordinate, class Encode, class Relative>
+Placed place(const Sample& sample, Encode encode, Relative relative) {
+  std::vector<Coordinate> vertices;
+  for (const auto& vertex : sample.vertices)
+    for (const Units coordinate : vertex) vertices.push_back(encode(coordinate));
+  const std::array<Coordinate, 3> camera{encode(sample.camera[0]), encode(sample.camera[1]), encode(sample.camera[2])};
+  return placed(std::move(vertices), camera, relative);
 }
 
 double meters(Units units) { return static_cast<double>(units) * kUnit; }
@@ -131,10 +138,10 @@ Placed inLattice(const Sample& sample) {
   std::array<Units, 3> origin = sample.vertices.front();
   for (const auto& vertex : sample.vertices)
     for (std::size_t a = 0; a < 3; ++a) origin[a] = std::min(origin[a], vertex[a]);
-  auto offsets = std::make_shared<std::vector<std::uint16_t>>();
+  std::vector<std::uint16_t> offsets;
   for (const auto& vertex : sample.vertices)
     for (std::size_t a = 0; a < 3; ++a)
-      offsets->push_back(static_cast<std::uint16_t>((vertex[a] - origin[a]) / kLatticeUnits));
+      offsets.push_back(static_cast<std::uint16_t>((vertex[a] - origin[a]) / kLatticeUnits));
   std::array<LatticeCamera, 3> camera{};
   for (std::size_t a = 0; a < 3; ++a) {
     const Units whole = sample.camera[a] >> 10;
@@ -144,15 +151,7 @@ Placed inLattice(const Sample& sample) {
   const auto relative = [](std::uint16_t offset, const LatticeCamera& c) {
     return (static_cast<float>(c.steps + offset) - c.rest) * static_cast<float>(kLatticeMeters);
   };
-  return {[=](std::size_t i) { return relative((*offsets)[i], camera[i % 3]); },
-          [=](std::size_t count) {
-            const std::uint16_t* v = offsets->data();
-            float sum = 0;
-            for (std::size_t done = 0; done < count; done += kVertices)
-              for (std::size_t i = 0; i < 3 * kVertices; i += 3)
-                sum += relative(v[i], camera[0]) + relative(v[i + 1], camera[1]) + relative(v[i + 2], camera[2]);
-            return static_cast<double>(sum);
-          }};
+  return placed(std::move(offsets), camera, relative);
 }
 
 std::vector<Scheme> schemes() {
@@ -160,33 +159,29 @@ std::vector<Scheme> schemes() {
   const auto inThree = [](const DoubleFloat& v, const DoubleFloat& c) { return (v.hi - c.hi) + (v.lo - c.lo); };
   return {
       {"float32", 12,
-       [=](const Sample& s) {
-         return place<float, float>(s, asFloat, asFloat, [](float v, float c) { return v - c; });
-       }},
+       [=](const Sample& s) { return place<float>(s, asFloat, [](float v, float c) { return v - c; }); }},
       {"tiles of 2048 m, float32 offset", 24,
        [](const Sample& s) {
-         return place<Tiled, Tiled>(s, tiledOf, tiledOf, [](const Tiled& v, const Tiled& c) {
+         return place<Tiled>(s, tiledOf, [](const Tiled& v, const Tiled& c) {
            return static_cast<float>(v.index - c.index) * 2048.0f + (v.offset - c.offset);
          });
        }},
-      {"65536 split (Cesium)", 24,
-       [=](const Sample& s) { return place<DoubleFloat, DoubleFloat>(s, splitOf, splitOf, inThree); }},
-      {"double-float, 3 operations", 24,
-       [=](const Sample& s) { return place<DoubleFloat, DoubleFloat>(s, pairOf, pairOf, inThree); }},
+      {"65536 split (Cesium)", 24, [=](const Sample& s) { return place<DoubleFloat>(s, splitOf, inThree); }},
+      {"double-float, 3 operations", 24, [=](const Sample& s) { return place<DoubleFloat>(s, pairOf, inThree); }},
       {"double-float, 18 operations", 24,
        [](const Sample& s) {
-         return place<DoubleFloat, DoubleFloat>(
-             s, pairOf, pairOf, [](const DoubleFloat& v, const DoubleFloat& c) { return subtractAndDemote(v, c); });
+         return place<DoubleFloat>(s, pairOf,
+                                   [](const DoubleFloat& v, const DoubleFloat& c) { return subtractAndDemote(v, c); });
        }},
       {"double-float, 20 operations", 24,
        [](const Sample& s) {
-         return place<DoubleFloat, DoubleFloat>(
-             s, pairOf, pairOf, [](const DoubleFloat& v, const DoubleFloat& c) { return subtract(v, c).hi; });
+         return place<DoubleFloat>(s, pairOf,
+                                   [](const DoubleFloat& v, const DoubleFloat& c) { return subtract(v, c).hi; });
        }},
       {"lattice integers (Terrane)", 6, inLattice},
       {"float64", 24,
        [](const Sample& s) {
-         return place<double, double>(s, meters, meters, [](double v, double c) { return static_cast<float>(v - c); });
+         return place<double>(s, meters, [](double v, double c) { return static_cast<float>(v - c); });
        }},
   };
 }

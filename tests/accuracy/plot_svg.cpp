@@ -176,7 +176,7 @@ std::string plotSvg(const Plot& plot, const Report& report) {
   out += fmt::format("<text transform='translate(16 {}) rotate(-90)' text-anchor='middle' class='axis'>{}</text>\n",
                      (kTop + kHeight - kBottom) / 2, title(plot.y));
   out += "</svg><figcaption>" + escaped(plot.title);
-  if (all.leftOut > 0) out += fmt::format(" ({} points have no place on a logarithmic axis: 0)", all.leftOut);
+  if (all.leftOut > 0) out += fmt::format(" ({} points have no place on these axes: 0 or infinite)", all.leftOut);
   return out + "</figcaption></figure>\n";
 }
 

@@ -20,7 +20,7 @@ std::string shown(const Value& value);
 std::string textOf(const Finished& finished);
 
 /// accuracy.json: {"settings": …, "experiments": [{"name", "columns", "rows": [{key: value}], "findings"}]}; numbers
-/// with all their digits.
+/// with all their digits, null for what is infinite.
 std::string jsonOf(const Settings& settings, const std::vector<Finished>& all);
 
 /// A page that needs nothing but itself.

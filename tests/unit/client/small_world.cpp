@@ -92,6 +92,12 @@ FakeReply SmallWorld::answer(const std::string& target) {
   return rule_ ? rule_(target, reply) : reply;
 }
 
+SmallWorld::Rule wrongAtFirst(const std::string& ending, int times, const FakeReply& wrong) {
+  return [=, left = times](const std::string& asked, const FakeReply& usual) mutable {
+    return asked.ends_with(ending) && left-- > 0 ? wrong : usual;
+  };
+}
+
 SmallWorld::Rule holding(const std::string& ending) {
   return [ending](const std::string& asked, const FakeReply& usual) {
     FakeReply reply = usual;

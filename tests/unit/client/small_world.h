@@ -55,6 +55,9 @@ class SmallWorld {
   std::unique_ptr<FakeServer> server_;
 };
 
+/// Answers a target that ends so wrongly for the first times it is asked for.
+SmallWorld::Rule wrongAtFirst(const std::string& ending, int times, const FakeReply& wrong);
+
 /// Every answer to a target that ends so waits until it is released.
 SmallWorld::Rule holding(const std::string& ending);
 
