@@ -12,7 +12,7 @@ packages=(
   # software OpenGL and a virtual display, for machines without a GPU or a screen
   xvfb libgl1-mesa-dri libegl1 libgl1 xauth
   # tests, sanitizers, fuzzing, benchmarks
-  libgtest-dev libgmock-dev libbenchmark-dev libmpfr-dev clang libclang-rt-14-dev clang-format clang-tidy
+  libgtest-dev libgmock-dev libbenchmark-dev libmpfr-dev libqd-dev clang libclang-rt-14-dev clang-format clang-tidy
   nginx-light wrk curl procps python3-minimal
 )
 

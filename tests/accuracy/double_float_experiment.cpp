@@ -64,9 +64,9 @@ Work plain(const Inputs& in, Function function) {
 }
 
 using test::exact;
-using test::Quad;
+using test::HighPrecision;
 
-using Exact = std::function<Quad(const Quad&, const Quad&)>;
+using Exact = std::function<HighPrecision(const HighPrecision&, const HighPrecision&)>;
 
 struct Operation {
   const char* name;
@@ -99,11 +99,11 @@ std::vector<Operation> operations(const Inputs& in) {
   const auto over = [](auto a, auto b) { return a / b; };
   const auto root = [](auto a, auto) { return std::sqrt(a); };
   const auto inverseRoot = [](auto a, auto) { return 1 / std::sqrt(a); };
-  const Exact sum = [](const Quad& a, const Quad& b) -> Quad { return a + b; };
-  const Exact product = [](const Quad& a, const Quad& b) -> Quad { return a * b; };
-  const Exact quotient = [](const Quad& a, const Quad& b) -> Quad { return a / b; };
-  const Exact squareRootOf = [](const Quad& a, const Quad&) -> Quad { return sqrt(a); };
-  const Exact inverseOf = [](const Quad& a, const Quad&) -> Quad { return 1 / sqrt(a); };
+  const Exact sum = [](const HighPrecision& a, const HighPrecision& b) -> HighPrecision { return a + b; };
+  const Exact product = [](const HighPrecision& a, const HighPrecision& b) -> HighPrecision { return a * b; };
+  const Exact quotient = [](const HighPrecision& a, const HighPrecision& b) -> HighPrecision { return a / b; };
+  const Exact squareRootOf = [](const HighPrecision& a, const HighPrecision&) -> HighPrecision { return sqrt(a); };
+  const Exact inverseOf = [](const HighPrecision& a, const HighPrecision&) -> HighPrecision { return 1 / sqrt(a); };
   return {
       operation(
           in, "pair + float", "JMP17 algorithm 4", kAddFloatBound, true,
@@ -140,9 +140,9 @@ double worstUnits(const Operation& operation, std::uint64_t seed, int samples) {
     DoubleFloat y = operands.pair(i % 2 == 0 ? -2 : -26, 3);
     if (operation.yIsFloat) y.lo = 0;
     x = x.hi < 0 ? -x : x;
-    const Quad reference = operation.exact(exact(x), exact(y));
+    const HighPrecision reference = operation.exact(exact(x), exact(y));
     if (reference == 0) continue;
-    const Quad error = (exact(operation.run(x, y)) - reference) / reference;
+    const HighPrecision error = (exact(operation.run(x, y)) - reference) / reference;
     worst = std::max(worst, std::fabs(static_cast<double>(error)) / kFloatUnitSquared);
   }
   return worst;

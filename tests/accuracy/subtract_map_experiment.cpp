@@ -17,7 +17,7 @@ namespace terrane::accuracy {
 namespace {
 
 using test::exact;
-using test::Quad;
+using test::HighPrecision;
 
 /// Three operations: what the two hi words lose, nobody gives back.
 float subtractInThree(const DoubleFloat& x, const DoubleFloat& y) { return (x.hi - y.hi) + (x.lo - y.lo); }
@@ -35,10 +35,11 @@ Worst worstAt(int k, std::uint64_t seed, int samples) {
     const double distance =
         std::ldexp(1.0 + std::ldexp(static_cast<double>(operands.bits(30)), -30), -k) * (operands.bits(1) ? 1.0 : -1.0);
     const DoubleFloat y = subtract(x, fromDouble(distance * std::fabs(static_cast<double>(x.hi))));
-    const Quad reference = exact(x) - exact(y);
+    const HighPrecision reference = exact(x) - exact(y);
     if (reference == 0) continue;
     const auto units = [&](float difference) {
-      return std::fabs(static_cast<double>(Quad((Quad(difference) - reference) / reference))) / kFloatUnit;
+      return std::fabs(static_cast<double>(HighPrecision((HighPrecision(difference) - reference) / reference))) /
+             kFloatUnit;
     };
     worst.three = std::max(worst.three, units(subtractInThree(x, y)));
     worst.eighteen = std::max(worst.eighteen, units(subtractAndDemote(x, y)));

@@ -3,18 +3,10 @@
 #include <stdexcept>
 
 #include "client/gl/capabilities.h"
-#include "proto/resident_tile.h"
-#include "server/fields/height_field.h"
-#include "server/scenes/scene_file.h"
+#include "tests/support/shared_window.h"
 
 namespace terrane {
 namespace {
-
-/// Opened once; closed when the process ends, after all that a test made.
-std::unique_ptr<Window>& sharedWindow() {
-  static std::unique_ptr<Window> window;
-  return window;
-}
 
 template <class T>
 T require(Result<T> result) {
@@ -24,18 +16,14 @@ T require(Result<T> result) {
 
 }  // namespace
 
-void GlTest::SetUpTestSuite() {
-  if (sharedWindow()) return;
-  auto window = Window::open({.widthPixels = 320, .heightPixels = 240, .title = "capture tests", .headless = true});
+void GlTest::SetUp() {
+  const auto window = sharedWindow();
   ASSERT_TRUE(window) << window.error().text();
-  sharedWindow() = std::move(*window);
 }
-
-void GlTest::SetUp() { ASSERT_NE(sharedWindow(), nullptr); }
 
 void GlTest::TearDown() { EXPECT_EQ(gl::takeErrors(), ""); }
 
-Window& GlTest::window() { return *sharedWindow(); }
+Window& GlTest::window() { return **sharedWindow(); }
 
 TileSource& GlTest::moon() {
   static TileSource source("moon");
@@ -45,56 +33,6 @@ TileSource& GlTest::moon() {
 std::unique_ptr<TileRenderer> GlTest::makeRenderer(const std::vector<EffectCall>& effects,
                                                    const RendererOptions& options) {
   return require(TileRenderer::create(effects, options));
-}
-
-TestScene shippedScene(const std::string& name) {
-  Scene scene = require(loadScene(name));
-  return {scene.bodies.front(), scene.effects};
-}
-
-TileSource::TileSource(const std::string& sceneName)
-    : builder_(shippedScene(sceneName).body, WireSettings{}, bestSimdPath()),
-      field_(makeHeightField(builder_.body(), bestSimdPath())) {}
-
-std::shared_ptr<const Tile> TileSource::tile(const FacePath& path) {
-  std::shared_ptr<const Tile>& slot = tiles_[path];
-  if (!slot) {
-    slot = std::make_shared<const Tile>(require(builder_.buildMesh(path)));
-    resident_[path] = residentTile(*slot, builder_.body().radiusMeters);
-  }
-  return slot;
-}
-
-std::vector<FacePath> TileSource::settledTiles(const Camera& camera, double errorPixels) {
-  const ResidentLookup lookup = [this](const FacePath& path) -> const ResidentTile* {
-    const auto found = resident_.find(path);
-    return found == resident_.end() ? nullptr : &found->second;
-  };
-  SelectionSettings settings;
-  settings.errorPixels = errorPixels;
-  for (;;) {
-    TileSelection selected = selectTiles(camera, selection(), lookup, settings);
-    if (selected.complete) return selected.draw;
-    const std::size_t before = resident_.size();
-    for (const WantedTile& wanted : selected.wanted) tile(wanted.path);
-    if (resident_.size() == before) throw std::runtime_error("selection wants nothing more and is not complete");
-  }
-}
-
-double TileSource::groundMeters(double longitude, double latitude) const {
-  const Camera above = cameraFromPose({longitude, latitude, 0, 0, 0}, 1.0, 1.0, 1, 1);
-  const SampleBatch batch{&above.positionBody.x, &above.positionBody.y, &above.positionBody.z, 1, 1};
-  SurfaceSamples samples;
-  const double cell =
-      nominalTileWidthMeters(builder_.body().radiusMeters, selection().maxLevel) / builder_.info().cellsPerEdge;
-  field_->evaluate(batch, 2 * cell, samples);
-  return samples.heightMeters.front();
-}
-
-Camera TileSource::cameraAboveGround(const ViewPose& pose, int widthPixels, int heightPixels) const {
-  ViewPose placed = pose;
-  placed.altitudeMeters += groundMeters(pose.longitude, pose.latitude);
-  return cameraFromPose(placed, builder_.body().radiusMeters, 0.9, widthPixels, heightPixels);
 }
 
 }  // namespace terrane

@@ -4,45 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "client/gl/window.h"
 #include "client/render/tile_renderer.h"
-#include "common/tiling/cube_sphere.h"
-#include "common/view/camera.h"
-#include "common/view/tile_selection.h"
-#include "server/build/tile_builder.h"
+#include "tests/support/tile_source.h"
 
 namespace terrane {
 
-/// The tiles of one body, built on demand and kept.
-class TileSource {
- public:
-  explicit TileSource(const std::string& sceneName);
-
-  const TileBuilder& builder() const { return builder_; }
-  const SelectionBody& selection() const { return builder_.info().selection; }
-  std::shared_ptr<const Tile> tile(const FacePath& path);
-  /// The finished view of a camera: what is drawn when everything has arrived.
-  std::vector<FacePath> settledTiles(const Camera& camera, double errorPixels);
-  /// Terrain height under a direction, metres above the reference sphere, of the finest level.
-  double groundMeters(double longitude, double latitude) const;
-  /// A pose whose altitude counts from the ground.
-  Camera cameraAboveGround(const ViewPose& pose, int widthPixels, int heightPixels) const;
-
- private:
-  TileBuilder builder_;
-  std::unique_ptr<const HeightField> field_;
-  std::unordered_map<FacePath, ResidentTile> resident_;
-  std::unordered_map<FacePath, std::shared_ptr<const Tile>> tiles_;
-};
-
-/// Opens the window before the first test and checks after each that GL raised no error.
+/// Every test has the window and checks after each that GL raised no error.
 class GlTest : public testing::Test {
  protected:
-  static void SetUpTestSuite();
   void SetUp() override;
   void TearDown() override;
   static Window& window();
@@ -50,12 +22,6 @@ class GlTest : public testing::Test {
   static std::unique_ptr<TileRenderer> makeRenderer(const std::vector<EffectCall>& effects = {},
                                                     const RendererOptions& options = {});
 };
-
-struct TestScene {
-  Body body;
-  std::vector<EffectCall> effects;
-};
-TestScene shippedScene(const std::string& name);
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 

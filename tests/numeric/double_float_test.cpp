@@ -1,4 +1,4 @@
-// Double-float against 113-bit arithmetic, for each operation: the worst relative error found in a search over random
+// Double-float against MPFR, for each operation: the worst relative error found in a search over random
 // and over deliberately awkward operands stays below the published bound; and beside it stands what must fail: plain
 // float, a misordered FastTwoSum, the sloppy sum.
 #include "common/numerics/double_float.h"
@@ -16,13 +16,13 @@ namespace terrane {
 namespace {
 
 using test::exact;
+using test::HighPrecision;
 using test::isNormalised;
 using test::kSamples;
 using test::Operands;
-using test::Quad;
 
 /// Relative error in units of u^2.
-double errorUnits(const Quad& error, const Quad& reference) {
+double errorUnits(const HighPrecision& error, const HighPrecision& reference) {
   if (reference == 0) return error == 0 ? 0.0 : std::numeric_limits<double>::infinity();
   return std::fabs(static_cast<double>(error / reference)) / kFloatUnitSquared;
 }
@@ -47,14 +47,14 @@ TEST(DoubleFloat, SumsStayWithinTheirBounds) {
     const float f = operands.single(-26, 3);
     const DoubleFloat sumFloat = add(x, f);
     ASSERT_TRUE(isNormalised(sumFloat));
-    const Quad referenceFloat = exact(x) + Quad(f);
+    const HighPrecision referenceFloat = exact(x) + HighPrecision(f);
     withFloat.see(errorUnits(exact(sumFloat) - referenceFloat, referenceFloat));
 
     const DoubleFloat sum = add(x, y);
     ASSERT_TRUE(isNormalised(sum));
-    const Quad reference = exact(x) + exact(y);
+    const HighPrecision reference = exact(x) + exact(y);
     (x.hi * y.hi < 0 ? opposite : alike).see(errorUnits(exact(sum) - reference, reference));
-    plain.see(errorUnits(Quad(x.hi + y.hi) - reference, reference));
+    plain.see(errorUnits(HighPrecision(x.hi + y.hi) - reference, reference));
   }
   report("double-float + float", withFloat, kAddFloatBound);
   report("double-float + double-float, signs alike", alike, kAddBound);
@@ -72,7 +72,7 @@ TEST(DoubleFloat, CancellationCostsNothingWhereTheSloppySumAndMisorderedSumLoseE
     DoubleFloat y{-x.hi, operands.pair(-25, -25).hi};
     if (operands.bits(1)) y.hi = std::nextafter(y.hi, 0.0f);
     y = twoSum(y.hi, y.lo);
-    const Quad reference = exact(x) + exact(y);
+    const HighPrecision reference = exact(x) + exact(y);
     const DoubleFloat sum = add(x, y);
     accurate.see(errorUnits(exact(sum) - reference, reference));
     // [JMP17] algorithm 5.
@@ -87,7 +87,7 @@ TEST(DoubleFloat, CancellationCostsNothingWhereTheSloppySumAndMisorderedSumLoseE
     if (x.hi * y.hi < 0) y = -y;
     const float hi = x.hi + y.hi;
     const float lo = (y.hi - (hi - x.hi)) + (x.lo + y.lo);
-    const Quad reference = exact(x) + exact(y);
+    const HighPrecision reference = exact(x) + exact(y);
     misordered.see(errorUnits(exact(twoSum(hi, lo)) - reference, reference));
   }
   std::cout << "opposite signs: accurate " << accurate.units << " u^2, sloppy " << sloppy.units
@@ -103,11 +103,11 @@ TEST(DoubleFloat, SubtractAndDemoteRoundsOnce) {
   for (int i = 0; i < kSamples; ++i) {
     const DoubleFloat x = operands.pair(0, 2);
     const DoubleFloat y = i % 2 ? operands.pair(0, 2) : twoSum(x.hi, operands.single(-40, -22));
-    const Quad reference = exact(x) - exact(y);
-    const double error = errorUnits(Quad(subtractAndDemote(x, y)) - reference, reference) * kFloatUnit;
+    const HighPrecision reference = exact(x) - exact(y);
+    const double error = errorUnits(HighPrecision(subtractAndDemote(x, y)) - reference, reference) * kFloatUnit;
     worst = std::max(worst, error);
     ASSERT_EQ(subtractAndDemote(x, y), subtract(x, y).hi);
-    control = std::max(control, errorUnits(Quad(x.hi - y.hi) - reference, reference) * kFloatUnit);
+    control = std::max(control, errorUnits(HighPrecision(x.hi - y.hi) - reference, reference) * kFloatUnit);
   }
   std::cout << "worst " << worst << " u, bound " << kSubtractAndDemoteBound << " u; control, float: " << control
             << " u\n";
@@ -125,19 +125,19 @@ TEST(DoubleFloat, ProductsStayWithinTheirBounds) {
     const float f = operands.single(0, 1);
     ASSERT_TRUE(isNormalised(multiply(x, y)));
     ASSERT_TRUE(isNormalised(multiply(x, f)));
-    const Quad referenceFloat = exact(x) * Quad(f);
+    const HighPrecision referenceFloat = exact(x) * HighPrecision(f);
     withFloat.see(errorUnits(exact(multiply(x, f)) - referenceFloat, referenceFloat));
-    const Quad reference = exact(x) * exact(y);
+    const HighPrecision reference = exact(x) * exact(y);
     full.see(errorUnits(exact(multiply(x, y)) - reference, reference));
-    plain.see(errorUnits(Quad(x.hi * y.hi) - reference, reference));
+    plain.see(errorUnits(HighPrecision(x.hi * y.hi) - reference, reference));
     // The ends of the range for which the bounds are stated.
     const DoubleFloat large = operands.pair(98, 99);
     const DoubleFloat small = operands.pair(-40, -39);
-    const Quad mixed = exact(large) * exact(small);
+    const HighPrecision mixed = exact(large) * exact(small);
     ends.see(errorUnits(exact(multiply(large, small)) - mixed, mixed));
     const DoubleFloat half = operands.pair(-20, -20);
-    const Quad low = exact(half) * exact(operands.bits(1) ? half : -half);
-    ends.see(errorUnits(Quad(abs(Quad(exact(multiply(half, half))))) - abs(low), low));
+    const HighPrecision low = exact(half) * exact(operands.bits(1) ? half : -half);
+    ends.see(errorUnits(HighPrecision(abs(HighPrecision(exact(multiply(half, half))))) - abs(low), low));
   }
   report("double-float * float", withFloat, kMultiplyFloatBound);
   report("double-float * double-float", full, kMultiplyBound);
@@ -154,9 +154,9 @@ TEST(DoubleFloat, QuotientsStayWithinTheirBounds) {
     const float f = operands.single(0, 1);
     ASSERT_TRUE(isNormalised(divide(x, y)));
     // q y - x over x is the relative error of q.
-    withFloat.see(errorUnits(exact(divide(x, f)) * Quad(f) - exact(x), exact(x)));
+    withFloat.see(errorUnits(exact(divide(x, f)) * HighPrecision(f) - exact(x), exact(x)));
     full.see(errorUnits(exact(divide(x, y)) * exact(y) - exact(x), exact(x)));
-    plain.see(errorUnits(Quad(x.hi / y.hi) * exact(y) - exact(x), exact(x)));
+    plain.see(errorUnits(HighPrecision(x.hi / y.hi) * exact(y) - exact(x), exact(x)));
   }
   report("double-float / float", withFloat, kDivideFloatBound);
   report("double-float / double-float", full, kDivideBound);
@@ -166,19 +166,19 @@ TEST(DoubleFloat, QuotientsStayWithinTheirBounds) {
 TEST(DoubleFloat, RootsStayWithinTheirBounds) {
   Operands operands(316);
   Worst root, inverse, plain;
-  const auto see = [](Worst& worst, const Quad& squareOverX) {
+  const auto see = [](Worst& worst, const HighPrecision& squareOverX) {
     // (1 + e)^2 - 1 = 2 e to the first order.
-    worst.see(errorUnits(squareOverX - 1, Quad(2)));
+    worst.see(errorUnits(squareOverX - 1, HighPrecision(2)));
   };
   for (int i = 0; i < kSamples; ++i) {
     DoubleFloat x = i % 8 ? operands.pair(0, 1) : operands.pair(-40, 99);
     if (x.hi < 0) x = -x;
-    const Quad value = exact(x);
-    const Quad r = exact(squareRoot(x));
+    const HighPrecision value = exact(x);
+    const HighPrecision r = exact(squareRoot(x));
     see(root, r * r / value);
-    const Quad s = exact(inverseSquareRoot(x));
+    const HighPrecision s = exact(inverseSquareRoot(x));
     see(inverse, s * s * value);
-    const Quad p = std::sqrt(x.hi);
+    const HighPrecision p = std::sqrt(x.hi);
     see(plain, p * p / value);
     ASSERT_TRUE(isNormalised(squareRoot(x)));
     ASSERT_TRUE(isNormalised(inverseSquareRoot(x)));

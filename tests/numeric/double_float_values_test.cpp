@@ -19,11 +19,11 @@ namespace terrane {
 namespace {
 
 using test::exact;
+using test::HighPrecision;
 using test::isNormalised;
 using test::kSamples;
 using test::Limits;
 using test::Operands;
-using test::Quad;
 
 TEST(DoubleFloat, ADoubleAtOneAstronomicalUnitComesBackWithinAQuarterMillimetre) {
   Operands operands(321);
@@ -56,7 +56,7 @@ TEST(DoubleFloat, ComparisonIsByValue) {
   for (int i = 0; i < kSamples; ++i) {
     const DoubleFloat x = operands.pair(-1, 1);
     const DoubleFloat y = i % 3 == 0 ? x : i % 3 == 1 ? twoSum(x.hi, operands.single(-40, -26)) : operands.pair(-1, 1);
-    const Quad difference = exact(x) - exact(y);
+    const HighPrecision difference = exact(x) - exact(y);
     const std::partial_ordering order = compare(x, y);
     ASSERT_EQ(order == std::partial_ordering::less, difference < 0);
     ASSERT_EQ(order == std::partial_ordering::greater, difference > 0);
@@ -114,7 +114,7 @@ TEST(DoubleFloat, ZerosInfinitiesAndNaNBehaveAsFloatsDo) {
 TEST(DoubleFloat, DenormalsAddExactly) {
   const float d = Limits::denorm_min();
   EXPECT_EQ(add(DoubleFloat{d, 0}, DoubleFloat{d, 0}).hi, 2 * d);
-  EXPECT_EQ(exact(add(DoubleFloat{1.0f, d}, DoubleFloat{-1.0f, 0})), Quad(d));
+  EXPECT_EQ(exact(add(DoubleFloat{1.0f, d}, DoubleFloat{-1.0f, 0})), HighPrecision(d));
   EXPECT_EQ(subtractAndDemote(DoubleFloat{1.0f, d}, DoubleFloat{1.0f, 0}), d);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
-// Operands for double-float's searches: random, with deliberately awkward ones in their midst; and an arithmetic of 113
-// bits to compare with.
+// Operands for double-float's searches: random, with deliberately awkward ones in their midst; and MPFR's arithmetic to
+// compare with.
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -11,9 +11,12 @@
 
 namespace terrane::test {
 
-using Quad = boost::multiprecision::cpp_bin_float_quad;
+/// 60 digits, 200 bits: sums and products of pairs are exact, quotients and roots as good as.
+using HighPrecision =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<60, boost::multiprecision::allocate_stack>,
+                                  boost::multiprecision::et_off>;
 
-inline Quad exact(const DoubleFloat& x) { return Quad(x.hi) + Quad(x.lo); }
+inline HighPrecision exact(const DoubleFloat& x) { return HighPrecision(x.hi) + HighPrecision(x.lo); }
 
 class DoubleFloatOperands {
  public:

@@ -1,0 +1,70 @@
+#include "tests/support/tile_source.h"
+
+#include <stdexcept>
+
+#include "proto/resident_tile.h"
+#include "server/fields/height_field.h"
+#include "server/scenes/scene_file.h"
+
+namespace terrane {
+namespace {
+
+template <class T>
+T require(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().text());
+  return std::move(*result);
+}
+
+}  // namespace
+
+TestScene shippedScene(const std::string& name) {
+  Scene scene = require(loadScene(name));
+  return {scene.bodies.front(), scene.effects};
+}
+
+TileSource::TileSource(const std::string& sceneName)
+    : builder_(shippedScene(sceneName).body, WireSettings{}, bestSimdPath()),
+      field_(makeHeightField(builder_.body(), bestSimdPath())) {}
+
+std::shared_ptr<const Tile> TileSource::tile(const FacePath& path) {
+  std::shared_ptr<const Tile>& slot = tiles_[path];
+  if (!slot) {
+    slot = std::make_shared<const Tile>(require(builder_.buildMesh(path)));
+    resident_[path] = residentTile(*slot, builder_.body().radiusMeters);
+  }
+  return slot;
+}
+
+std::vector<FacePath> TileSource::settledTiles(const Camera& camera, double errorPixels) {
+  const ResidentLookup lookup = [this](const FacePath& path) -> const ResidentTile* {
+    const auto found = resident_.find(path);
+    return found == resident_.end() ? nullptr : &found->second;
+  };
+  SelectionSettings settings;
+  settings.errorPixels = errorPixels;
+  for (;;) {
+    TileSelection selected = selectTiles(camera, selection(), lookup, settings);
+    if (selected.complete) return selected.draw;
+    const std::size_t before = resident_.size();
+    for (const WantedTile& wanted : selected.wanted) tile(wanted.path);
+    if (resident_.size() == before) throw std::runtime_error("selection wants nothing more and is not complete");
+  }
+}
+
+double TileSource::groundMeters(double longitude, double latitude) const {
+  const Camera above = cameraFromPose({longitude, latitude, 0, 0, 0}, 1.0, 1.0, 1, 1);
+  const SampleBatch batch{&above.positionBody.x, &above.positionBody.y, &above.positionBody.z, 1, 1};
+  SurfaceSamples samples;
+  const double cell =
+      nominalTileWidthMeters(builder_.body().radiusMeters, selection().maxLevel) / builder_.info().cellsPerEdge;
+  field_->evaluate(batch, 2 * cell, samples);
+  return samples.heightMeters.front();
+}
+
+Camera TileSource::cameraAboveGround(const ViewPose& pose, int widthPixels, int heightPixels) const {
+  ViewPose placed = pose;
+  placed.altitudeMeters += groundMeters(pose.longitude, pose.latitude);
+  return cameraFromPose(placed, builder_.body().radiusMeters, 0.9, widthPixels, heightPixels);
+}
+
+}  // namespace terrane
