@@ -14,10 +14,9 @@ Error shaderError(std::string_view file, std::string_view log) {
   return makeError(ErrorKind::Unsupported, "shader", fmt::format("{}: {}", file, log));
 }
 
-/// Appends a file with its #include lines replaced. The files are the project's own, so a line either starts with
+/// Appends a source with its #include lines replaced. The sources are the project's own, so a line either starts with
 /// #include or not.
-bool appendSource(std::string_view fileName, int depth, std::string& out) {
-  std::string_view source = shaderSource(fileName);
+bool appendSource(std::string_view source, int depth, std::string& out) {
   if (source.empty() || depth > kMaxIncludeDepth) return false;
   constexpr std::string_view kInclude = "#include \"";
   while (!source.empty()) {
@@ -26,7 +25,7 @@ bool appendSource(std::string_view fileName, int depth, std::string& out) {
     source.remove_prefix(end == std::string_view::npos ? source.size() : end + 1);
     if (line.substr(0, kInclude.size()) == kInclude) {
       line.remove_prefix(kInclude.size());
-      if (!appendSource(line.substr(0, line.find('"')), depth + 1, out)) return false;
+      if (!appendSource(shaderSource(line.substr(0, line.find('"'))), depth + 1, out)) return false;
     } else {
       out.append(line).push_back('\n');
     }
@@ -37,16 +36,19 @@ bool appendSource(std::string_view fileName, int depth, std::string& out) {
 std::string prologue(const Capabilities& capabilities, const std::vector<std::string>& defines) {
   std::string text = fmt::format("#version {} core\n", capabilities.shadingLanguage);
   if (capabilities.preciseByExtension) text += "#extension GL_ARB_gpu_shader5 : enable\n";
-  if (capabilities.precise) text += "#define HAS_PRECISE\n";
+  // Both came into the language together.
+  if (capabilities.precise) text += "#define HAS_PRECISE\n#define HAS_FMA\n";
   text += capabilities.precise ? "#define PRECISE precise\n" : "#define PRECISE\n";
+  text += "#define FUNCTION\n";  // of the sources that C++ shares
   if (capabilities.clipControl) text += "#define CLIP_CONTROL\n";
   for (const std::string& define : defines) text += "#define " + define + "\n";
   return text;
 }
 
-Result<Handle<ObjectKind::Shader>> compile(GLenum stage, std::string_view file, const std::string& head) {
+Result<Handle<ObjectKind::Shader>> compile(GLenum stage, std::string_view file, std::string_view source,
+                                           const std::string& head) {
   std::string text = head;
-  if (!appendSource(file, 0, text)) return shaderError(file, "not built into this program");
+  if (!appendSource(source, 0, text)) return shaderError(file, "not built into this program");
   Handle<ObjectKind::Shader> shader(glCreateShader(stage));
   const char* pointer = text.c_str();
   glShaderSource(shader.id(), 1, &pointer, nullptr);
@@ -66,12 +68,14 @@ Result<Handle<ObjectKind::Shader>> compile(GLenum stage, std::string_view file, 
 Result<Program> Program::build(const ProgramSpec& spec, const Capabilities& capabilities) {
   const std::string head = prologue(capabilities, spec.defines);
   Handle<ObjectKind::Program> program(glCreateProgram());
-  auto vertex = compile(GL_VERTEX_SHADER, spec.vertexFile, head);
+  const std::string_view vertexName = spec.vertexText.empty() ? spec.vertexFile : "vertex shader";
+  const std::string_view vertexText = spec.vertexText.empty() ? shaderSource(spec.vertexFile) : spec.vertexText;
+  auto vertex = compile(GL_VERTEX_SHADER, vertexName, vertexText, head);
   if (!vertex) return vertex.error();
   glAttachShader(program.id(), vertex->id());
   Handle<ObjectKind::Shader> fragment;
   if (!spec.fragmentFile.empty()) {
-    auto compiled = compile(GL_FRAGMENT_SHADER, spec.fragmentFile, head);
+    auto compiled = compile(GL_FRAGMENT_SHADER, spec.fragmentFile, shaderSource(spec.fragmentFile), head);
     if (!compiled) return compiled.error();
     fragment = std::move(*compiled);
     glAttachShader(program.id(), fragment.id());
@@ -88,7 +92,7 @@ Result<Program> Program::build(const ProgramSpec& spec, const Capabilities& capa
     GLsizei length = 0;
     glGetProgramInfoLog(program.id(), static_cast<GLsizei>(log.size()), &length, log.data());
     log.resize(static_cast<std::size_t>(length));
-    return shaderError(spec.vertexFile, log);
+    return shaderError(vertexName, log);
   }
   glDetachShader(program.id(), vertex->id());
   if (fragment) glDetachShader(program.id(), fragment.id());

@@ -24,10 +24,11 @@ struct Uniform {
 };
 
 struct ProgramSpec {
-  std::string_view vertexFile;
-  std::string_view fragmentFile;              ///< empty: vertices only (transform feedback)
-  std::vector<std::string> defines;           ///< "NAME" or "NAME value"
-  std::vector<const char*> feedbackVaryings;  ///< captured, interleaved
+  std::string_view vertexFile = {};
+  std::string_view vertexText = {};                ///< in place of a file; may include files
+  std::string_view fragmentFile = {};              ///< empty: vertices only (transform feedback)
+  std::vector<std::string> defines = {};           ///< "NAME" or "NAME value"
+  std::vector<const char*> feedbackVaryings = {};  ///< captured, interleaved
 };
 
 class Program {

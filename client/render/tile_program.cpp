@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "common/numerics/double_float3.h"
+
 namespace terrane {
 namespace {
 
@@ -87,9 +89,9 @@ void TileProgram::begin(const Camera& camera, const EffectList& effects) {
   stepExponent_.reset();
   setUniform(clipRows_, clipRows(camera));
   setUniform(nearMeters_, static_cast<float>(camera.nearMeters));
-  const FloatPairVec split = splitToFloats(camera.positionBody);
-  setUniform(cameraHigh_, split.high);
-  setUniform(cameraLow_, split.low);
+  const DoubleFloat3 position = fromDouble(camera.positionBody);
+  setUniform(cameraHigh_, position.hi);
+  setUniform(cameraLow_, position.lo);
   if (purpose_ == TilePurpose::Shaded) {
     setUniform(exposure_, std::pow(kExposure * kColorScale, static_cast<float>(1 / kDisplayGamma)));
     setTint(glm::vec3(1.0f));
@@ -105,7 +107,7 @@ bool TileProgram::place(GpuTile& tile, std::vector<float>& scratch) {
   const int stepExponent = tile.metadata.stepExponent;
   if (stepExponent_ != stepExponent) {
     stepExponent_ = stepExponent;
-    camera_ = cameraOnLattice(cameraBody_, stepExponent);
+    camera_ = cameraOnLattice(cameraBody_, stepMeters(stepExponent));
     setUniform(stepMeters_, static_cast<float>(stepMeters(stepExponent)));
     setUniform(cameraRest_, camera_.rest);
   }
@@ -114,9 +116,9 @@ bool TileProgram::place(GpuTile& tile, std::vector<float>& scratch) {
     if (!difference) return false;
     setUniform(originMinusCamera_, *difference);
   } else {
-    const FloatPairVec origin = splitToFloats(latticePosition(tile.metadata.origin, stepExponent));
-    setUniform(originHigh_, origin.high);
-    setUniform(originLow_, origin.low);
+    const DoubleFloat3 origin = fromDouble(latticePosition(tile.metadata.origin, stepExponent));
+    setUniform(originHigh_, origin.hi);
+    setUniform(originLow_, origin.lo);
   }
   tile.array.bind();
   return true;

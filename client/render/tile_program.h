@@ -11,6 +11,7 @@
 #include "client/render/gpu_tiles.h"
 #include "client/render/placement.h"
 #include "client/render/tile_renderer.h"
+#include "common/numerics/relative_position.h"
 
 namespace terrane {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "client/render/placement.h"
 #include "common/result.h"
 #include "common/scene/effects.h"
 #include "common/view/camera.h"
@@ -16,16 +16,6 @@
 #include "proto/tile_mesh.h"
 
 namespace terrane {
-
-/// How a vertex finds its place relative to the camera:
-///   Integer      (origin - camera) in steps + offset, as integers in the shader; converted once, then minus the
-///   camera's sub-step rest DoubleFloat  origin + offset * step as a double-float, minus the camera as a double-float,
-///   in the shader Cpu          double on the CPU, uploaded as camera-relative floats every frame (the reference)
-///   Float32      origin + offset * step as plain floats: the control that jitters
-enum class Placement : std::uint8_t { Integer, DoubleFloat, Cpu, Float32 };
-std::string_view placementName(Placement placement) noexcept;
-/// Errors name "--placement" and list what is allowed.
-Result<Placement> parsePlacement(std::string_view text);
 
 /// What the start-up check of this GPU's arithmetic found (client/render/gpu_self_test.h).
 struct SelfTestReport {

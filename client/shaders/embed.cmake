@@ -1,6 +1,10 @@
-# Writes a C++ file that holds every shader of FOLDER, so that the viewer needs no files at run time.
-#   cmake -DFOLDER=client/shaders -DOUTPUT=shader_sources.cpp -P embed.cmake
-file(GLOB files ${FOLDER}/*.glsl)
+# Writes a C++ file that holds every shader of FOLDERS, so that the viewer needs no files at run time.
+#   cmake "-DFOLDERS=client/shaders;common/numerics" -DOUTPUT=shader_sources.cpp -P embed.cmake
+set(files "")
+foreach(folder ${FOLDERS})
+  file(GLOB found ${folder}/*.glsl)
+  list(APPEND files ${found})
+endforeach()
 list(SORT files)
 set(text "#include \"client/gl/shader_program.h\"\n\nnamespace terrane::gl {\n\n")
 string(APPEND text "std::string_view shaderSource(std::string_view fileName) noexcept {\n")

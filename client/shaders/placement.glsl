@@ -11,14 +11,12 @@ layout(location = 0) in uvec4 vertexOffset;  // x, y, z in steps from the tile's
 uniform float stepMeters;                    // a power of two: multiplying by it is exact
 
 #ifdef PLACEMENT_INTEGER
+#include "relative_position.glsl"
 uniform ivec3 originMinusCamera;  // in steps; the camera rounded down to the lattice
 uniform vec3 cameraRest;          // what was rounded away, in steps, 0..1
 
 vec3 relativePosition() {
-  ivec3 steps = originMinusCamera + ivec3(vertexOffset.xyz);
-  PRECISE vec3 fromCamera = vec3(steps) - cameraRest;
-  PRECISE vec3 meters = fromCamera * stepMeters;
-  return meters;
+  return relativeOnLattice(originMinusCamera, ivec3(vertexOffset.xyz), cameraRest, stepMeters);
 }
 #endif
 
@@ -30,7 +28,7 @@ uniform vec3 cameraHigh, cameraLow;
 vec3 relativePosition() {
   PRECISE vec3 offsetMeters = vec3(vertexOffset.xyz) * stepMeters;
   DoubleFloat3 position = addFloat(DoubleFloat3(originHigh, originLow), offsetMeters);
-  return subtractToFloat(position, DoubleFloat3(cameraHigh, cameraLow));
+  return subtractPairToFloat(position, DoubleFloat3(cameraHigh, cameraLow));
 }
 #endif
 

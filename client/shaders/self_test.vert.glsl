@@ -18,14 +18,13 @@ out vec2 relative;     // that float; minus pair.x
 void main() {
   DoubleFloat3 sum3 = twoSum(vec3(pair.x), vec3(pair.y));
   DoubleFloat3 product3 = twoProd(vec3(pair.x), vec3(pair.y));
-  sums = vec2(sum3.high.x, sum3.low.x);
-  PRECISE float product = pair.x * pair.y;
-#ifdef HAS_PRECISE
-  PRECISE float error = fma(pair.x, pair.y, -product);
+  sums = vec2(sum3.hi.x, sum3.lo.x);
+#ifdef HAS_FMA
+  DoubleFloat3 fused3 = twoProdFma(vec3(pair.x), vec3(pair.y));
 #else
-  float error = 0.0;
+  DoubleFloat3 fused3 = DoubleFloat3(vec3(0.0), vec3(0.0));
 #endif
-  products = vec4(product3.high.x, product3.low.x, product, error);
+  products = vec4(product3.hi.x, product3.lo.x, fused3.hi.x, fused3.lo.x);
   int sum = integers.x + int(offset.x);
   PRECISE float converted = float(sum);
   PRECISE float difference = converted - pair.x;

@@ -13,6 +13,7 @@
 #include "client/gl/image.h"
 #include "client/gl/render_target.h"
 #include "client/render/placement.h"
+#include "common/numerics/relative_position.h"
 #include "tests/capture/gl_fixture.h"
 
 namespace terrane {
@@ -266,7 +267,7 @@ TEST_F(PlacementTest, ATileTooFarForTheShadersIntegersIsPlacedOnTheCpu) {
   renderer->upload(tile);
   Camera camera = cameraFromPose({0.1, 0.1, 5e7, 0, -90 * kDegree}, 1737400, 0.9, kWidth, kHeight);
   ASSERT_FALSE(originMinusCamera(tile->metadata.origin,
-                                 cameraOnLattice(camera.positionBody, tile->metadata.stepExponent).steps));
+                                 cameraOnLattice(camera.positionBody, stepMeters(tile->metadata.stepExponent)).steps));
   EXPECT_EQ(renderer->clipPositions(camera, path, Placement::Integer),
             renderer->clipPositions(camera, path, Placement::Cpu));
 }
@@ -316,21 +317,11 @@ TEST(Placement, NamesAreReadBackAndUnknownOnesListWhatIsAllowed) {
 }
 
 TEST(Placement, TheCameraIsRoundedDownToTheLatticeOnNegativeAxesToo) {
-  const CameraOnLattice camera = cameraOnLattice({-0.3, 10.0, -1737400.125}, -2);
+  const CameraOnLattice camera = cameraOnLattice({-0.3, 10.0, -1737400.125}, 0.25);
   EXPECT_EQ(camera.steps, LatticePoint(-2, 40, -6949601));
   EXPECT_FLOAT_EQ(camera.rest.x, 0.8f);
   EXPECT_EQ(camera.rest.y, 0.0f);
   EXPECT_EQ(camera.rest.z, 0.5f);
-}
-
-TEST(Placement, SplitFloatsCarryFortyEightBitsOnEveryAxis) {
-  const glm::dvec3 value(1737400.123456789, -679505.45025, 29406.3985);
-  const FloatPairVec pair = splitToFloats(value);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double sum = static_cast<double>(pair.high[axis]) + static_cast<double>(pair.low[axis]);
-    EXPECT_LE(std::abs(sum - value[axis]), std::ldexp(std::abs(value[axis]), -48)) << "axis " << axis;
-    EXPECT_NE(pair.low[axis], 0.0f) << "axis " << axis;
-  }
 }
 
 }  // namespace

@@ -12,6 +12,8 @@ namespace terrane::test {
 using Limits = std::numeric_limits<float>;
 
 inline constexpr int kSamples = 100000;
+/// For each operation; half of them close in on the worst of the other half.
+inline constexpr std::size_t kSearchSamples = 600000;
 
 inline bool isNormalised(const DoubleFloat& x) { return x.hi + x.lo == x.hi; }
 
