@@ -35,20 +35,26 @@ std::shared_ptr<const Tile> TileSource::tile(const FacePath& path) {
   return slot;
 }
 
-std::vector<FacePath> TileSource::settledTiles(const Camera& camera, double errorPixels) {
+TileSelection TileSource::select(const Camera& camera, const SelectionSettings& settings) const {
   const ResidentLookup lookup = [this](const FacePath& path) -> const ResidentTile* {
     const auto found = resident_.find(path);
     return found == resident_.end() ? nullptr : &found->second;
   };
-  SelectionSettings settings;
-  settings.errorPixels = errorPixels;
+  return selectTiles(camera, selection(), lookup, settings);
+}
+
+TileSelection TileSource::settle(const Camera& camera, const SelectionSettings& settings) {
   for (;;) {
-    TileSelection selected = selectTiles(camera, selection(), lookup, settings);
-    if (selected.complete) return selected.draw;
+    TileSelection selected = select(camera, settings);
+    if (selected.complete) return selected;
     const std::size_t before = resident_.size();
     for (const WantedTile& wanted : selected.wanted) tile(wanted.path);
     if (resident_.size() == before) throw std::runtime_error("selection wants nothing more and is not complete");
   }
+}
+
+std::vector<FacePath> TileSource::settledTiles(const Camera& camera, double errorPixels) {
+  return settle(camera, {.errorPixels = errorPixels}).draw;
 }
 
 double TileSource::groundMeters(double longitude, double latitude) const {

@@ -29,7 +29,11 @@ class TileSource {
   const TileBuilder& builder() const { return builder_; }
   const SelectionBody& selection() const { return builder_.info().selection; }
   std::shared_ptr<const Tile> tile(const FacePath& path);
-  /// The finished view of a camera: what is drawn when everything has arrived.
+  /// What a viewer's frame selects among the tiles built so far.
+  TileSelection select(const Camera& camera, const SelectionSettings& settings) const;
+  /// The finished view of a camera: builds what is wanted until nothing is.
+  TileSelection settle(const Camera& camera, const SelectionSettings& settings);
+  /// What is drawn when everything has arrived.
   std::vector<FacePath> settledTiles(const Camera& camera, double errorPixels);
   /// Terrain height under a direction, metres above the reference sphere, of the finest level.
   double groundMeters(double longitude, double latitude) const;

@@ -305,6 +305,27 @@ TEST(TileSelection, WantsNothingBeyondTheHorizon) {
   }
 }
 
+// (That what a test leaves out is not seen, integration/selection_brute_force_test proves.)
+TEST(TileSelection, EachTestOnlyLeavesTilesOut) {
+  Views views;
+  std::size_t leftOut = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Camera camera = views.camera();
+    const SelectionSettings without{.frustumCulling = i % 2 != 0, .horizonCulling = i % 2 == 0};
+    Residents residents;
+    const std::vector<FacePath> more = settle(camera, moon(), without, residents).draw;
+    const std::vector<FacePath> fewer = settle(camera, moon(), {}, residents).draw;
+    // A neighbour that is out of view may force a tile finer, never coarser.
+    PathSet drawnOrRefined;
+    for (const FacePath& path : more)
+      for (int level = 0; level <= path.level(); ++level) drawnOrRefined.insert(path.ancestor(level));
+    for (const FacePath& path : fewer) EXPECT_TRUE(drawnOrRefined.contains(path)) << path.text();
+    EXPECT_LE(fewer.size(), more.size());
+    leftOut += more.size() - fewer.size();
+  }
+  EXPECT_GT(leftOut, 0u);
+}
+
 TEST(TileSelection, LeavesOutALeafWhoseOwnMeshIsOutOfViewButNotWhatMayHoldFinerGround) {
   // Looking level from 3 km over a body whose proven bounds reach above the camera everywhere, and whose ground lies
   // deep below.
