@@ -122,7 +122,7 @@ Report run(const Settings& settings, Progress& progress) {
   return report;
 }
 
-const Registration kRegistered({71, "culling", "Horizon and frustum tests",
+const Registration kRegistered({66, "culling", "Horizon and frustum tests",
                                 "What do the tests that leave tiles out save, and do they change the picture?", run});
 
 }  // namespace

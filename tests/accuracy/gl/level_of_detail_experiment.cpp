@@ -130,7 +130,7 @@ Report run(const Settings& settings, Progress& progress) {
   return report;
 }
 
-const Registration kRegistered({70, "level-of-detail", "Level of detail",
+const Registration kRegistered({65, "level-of-detail", "Level of detail",
                                 "How much of the picture does each pixel of allowed error cost, and what does it save?",
                                 run});
 
