@@ -104,6 +104,7 @@ void Program::use() const { glUseProgram(handle_.id()); }
 Uniform Program::uniform(const char* name) const { return Uniform{glGetUniformLocation(handle_.id(), name)}; }
 
 void setUniform(Uniform uniform, float value) { glUniform1f(uniform.location, value); }
+void setUniform(Uniform uniform, const glm::vec2& value) { glUniform2fv(uniform.location, 1, glm::value_ptr(value)); }
 void setUniform(Uniform uniform, const glm::vec3& value) { glUniform3fv(uniform.location, 1, glm::value_ptr(value)); }
 void setUniform(Uniform uniform, const glm::vec4& value) { glUniform4fv(uniform.location, 1, glm::value_ptr(value)); }
 void setUniform(Uniform uniform, const glm::ivec3& value) { glUniform3iv(uniform.location, 1, glm::value_ptr(value)); }

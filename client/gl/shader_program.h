@@ -3,6 +3,7 @@
 
 #include <array>
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <string>
@@ -47,6 +48,7 @@ class Program {
 
 /// Of the program in use.
 void setUniform(Uniform uniform, float value);
+void setUniform(Uniform uniform, const glm::vec2& value);
 void setUniform(Uniform uniform, const glm::vec3& value);
 void setUniform(Uniform uniform, const glm::vec4& value);
 void setUniform(Uniform uniform, const glm::ivec3& value);

@@ -102,11 +102,11 @@ TEST(RelativePosition, LatticeIntegersAreExactButForTheCamerasRestAtAnyDistance)
 }
 
 TEST(RelativePosition, ASplitAt65536MetresLosesMillimetresWherePairsLoseNone) {
-  // Cesium's encoding: multiples of 65536 m and the rest, each as a float.
+  // Cesium's encoding: multiples of 65536 m towards 0, and the rest, each as a float.
   Operands operands(363);
   double worst = 0, pairs = 0;
   const auto split = [](double meters) {
-    const double high = std::floor(meters / 65536) * 65536;
+    const double high = std::trunc(meters / 65536) * 65536;
     return DoubleFloat(static_cast<float>(high), static_cast<float>(meters - high));
   };
   for (int i = 0; i < 20000; ++i) {

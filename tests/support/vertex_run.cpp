@@ -25,6 +25,10 @@ void VertexRun::setVertices(std::span<const std::byte> vertices, std::size_t str
   out_.allocate(gl::BufferTarget::Feedback, vertexCount_ * floatsPerVertex_ * sizeof(float), gl::BufferUse::ReadBack);
 }
 
+void VertexRun::replaceVertices(std::span<const std::byte> vertices) {
+  in_.upload(gl::BufferTarget::Vertices, vertices, gl::BufferUse::Stream);
+}
+
 void VertexRun::run() {
   program_.use();
   array_.bind();

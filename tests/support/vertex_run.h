@@ -17,10 +17,10 @@ namespace terrane::test {
 class VertexRun {
  public:
   struct Spec {
-    std::string_view vertexText;  ///< may include the project's shader files
-    std::vector<std::string> defines;
-    std::vector<const char*> varyings;  ///< floats
-    std::size_t floatsPerVertex = 0;    ///< in all varyings together
+    std::string_view vertexText = {};  ///< may include the project's shader files
+    std::vector<std::string> defines = {};
+    std::vector<const char*> varyings = {};  ///< floats
+    std::size_t floatsPerVertex = 0;         ///< in all varyings together
   };
   /// Errors: Unsupported ("shader").
   static Result<VertexRun> create(const Spec& spec);
@@ -28,6 +28,8 @@ class VertexRun {
   /// Replaces the vertices, interleaved.
   void setVertices(std::span<const std::byte> vertices, std::size_t stride,
                    std::span<const gl::VertexAttribute> attributes);
+  /// As many as before, of the same layout: what is uploaded for every frame.
+  void replaceVertices(std::span<const std::byte> vertices);
   const gl::Program& program() const noexcept { return program_; }
   /// Runs over all vertices and waits until that is done. Uniforms keep what they were set to.
   void run();

@@ -63,8 +63,9 @@ DoubleFloat3 splitOf(const FinePoint& point) {
   DoubleFloat3 split;
   constexpr int kSplitBits = 36;  // 65536 m of units
   for (int axis = 0; axis < 3; ++axis) {
-    const Units units = point.units[static_cast<std::size_t>(axis)], high = units >> kSplitBits;
-    const double rest = static_cast<double>(units - (high << kSplitBits)) + point.restUnits[axis];
+    const Units units = point.units[static_cast<std::size_t>(axis)];
+    const Units high = units / (Units{1} << kSplitBits);  // towards 0
+    const double rest = static_cast<double>(units - high * (Units{1} << kSplitBits)) + point.restUnits[axis];
     split.hi[axis] = static_cast<float>(high) * 65536.0f;
     split.lo[axis] = static_cast<float>(rest * kUnitMeters);
   }

@@ -56,7 +56,7 @@ inline constexpr std::size_t kMoonsRadius = 3;  ///< in kPlaces
 glm::vec3 floatsOf(const FinePoint& point);
 glm::dvec3 doublesOf(const FinePoint& point);
 DoubleFloat3 pairsOf(const FinePoint& point);
-/// Cesium's encoding: multiples of 65536 m and the rest.
+/// Cesium's encoding: multiples of 65536 m, towards 0, and the rest.
 DoubleFloat3 splitOf(const FinePoint& point);
 
 /// Vertex minus camera, metres: exact while they are within 4 m of each other.
