@@ -7,6 +7,7 @@
 //   INVERSE_ROOT  gives 1 / sqrt(x): the hardware's instruction in GLSL
 //   HAS_FMA       (may be left out) says that fma() is there; not that it is fused
 //   OWN_SPLIT     (may be left out) says that splitFloat is there already: C++ brings one that does not overflow
+//   OWN_PROD      (may be left out) says that twoProd is there already: where a fused multiply-add is known to be fused
 //
 // Bounds and sources are in double_float.h. These are the bare algorithms, for finite operands and results of magnitude 2^-40 .. 2^100, or 0;
 // what is not finite spoils hi or lo, and the sign of a zero may be lost.
@@ -42,6 +43,7 @@ FUNCTION PAIR splitFloat(REAL a) {
 }
 #endif
 
+#ifndef OWN_PROD
 // Dekker, 17 operations: hi + lo is exactly a b.
 FUNCTION PAIR twoProd(REAL a, REAL b) {
   PAIR as = splitFloat(a);
@@ -57,6 +59,7 @@ FUNCTION PAIR twoProd(REAL a, REAL b) {
   PRECISE REAL error = e3 + lowLow;
   return PAIR(product, error);
 }
+#endif
 
 #ifdef HAS_FMA
 // 2 operations, exact where fma() rounds once. In a shader no one promises that, and llvmpipe's does not: there this is the control.

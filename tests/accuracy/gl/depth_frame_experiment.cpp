@@ -18,6 +18,7 @@
 #include "tests/accuracy/gl/gl_experiment.h"
 #include "tests/accuracy/gl/moon_stage.h"
 #include "tests/accuracy/side_by_side.h"
+#include "tests/accuracy/span.h"
 
 namespace terrane::accuracy {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <mutex>
 
 #include "client/gl/capabilities.h"
@@ -29,16 +28,6 @@ std::optional<Report> whyNotDrawn() {
 std::string picturesText(int widthPixels, int heightPixels) {
   return fmt::format("Pictures of {} x {} pixels, drawn by {}.", widthPixels, heightPixels,
                      gl::detectCapabilities().renderer);
-}
-
-void Span::include(double value) {
-  least_ = std::min(least_, value);
-  most_ = std::max(most_, value);
-}
-
-std::string Span::text() const {
-  const std::string least = fmt::format("{:.3g}", least_), most = fmt::format("{:.3g}", most_);
-  return least == most ? most : least + " to " + most;
 }
 
 }  // namespace terrane::accuracy
