@@ -14,13 +14,14 @@ for argument in "$@"; do
 done
 deploy/install.sh >&2
 cmake --preset release >&2
-cmake --build --preset release --target terrane-server terrane-view bench_tile_build bench_viewer >&2
+cmake --build --preset release --target terrane-server terrane-view terrane-accuracy bench_tile_build bench_viewer >&2
 bin=build/release/bin
 tiles=25 rounds=5 seconds=4
 $quick && tiles=5 rounds=1 seconds=1
 
-report=$(mktemp)
-trap 'rm -f "$report"' EXIT
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+report=$work/report.md
 {
   echo "**Building a tile**, by level, beside what stock Draco (edgebreaker, speed 7, 16 bits) alone takes for the same mesh:"
   echo
@@ -35,12 +36,25 @@ trap 'rm -f "$report"' EXIT
   tests/bench/viewer_bench.sh "$bin" "$($quick && echo 10 || echo 60)"
 } | tee "$report"
 
+"$bin/terrane-accuracy" $($quick && echo --quick) --only summary --out "$work/accuracy" >&2
+python3 - "$work/accuracy/accuracy.json" >"$work/accuracy.md" <<'PY'
+import json, sys
+summary = json.load(open(sys.argv[1]))["experiments"][0]
+keys = list(summary["columns"])
+print("| " + " | ".join(summary["columns"].values()) + " |")
+print("|---" * len(keys) + "|")
+for row in summary["rows"]:
+    print("| " + " | ".join(v if isinstance(v, str) else f"{v:.2g}" for v in (row[k] for k in keys)) + " |")
+PY
+cat "$work/accuracy.md"
+
 if $write; then
-  python3 - "$report" <<'PY'
+  python3 - "$report" "$work/accuracy.md" <<'PY'
 import re, sys
-body = open(sys.argv[1]).read().strip()
 text = open("README.md").read()
-text = re.sub(r"(<!-- bench:begin -->\n).*?(<!-- bench:end -->)", lambda m: m.group(1) + body + "\n" + m.group(2), text, flags=re.S)
+for name, file in (("bench", sys.argv[1]), ("accuracy", sys.argv[2])):
+    body = open(file).read().strip()
+    text = re.sub(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", lambda m: m.group(1) + body + "\n" + m.group(2), text, flags=re.S)
 open("README.md", "w").write(text)
 PY
   echo "bench: README.md updated" >&2
