@@ -183,7 +183,8 @@ Report run(const Settings& settings, Progress& progress) {
     addRows(table, all[i], times[i], settings);
     progress.at(static_cast<double>(i + 1) / static_cast<double>(all.size()));
   }
-  table.report.plots = {{"Error over time, an operation a point", "timeNs", "worstRelative", "number"}};
+  table.report.plots = {
+      {"Error over time, an operation a point", "timeNs", "worstRelative", "number", true, true, false}};
   table.report.findings = findings(table);
   return table.report;
 }

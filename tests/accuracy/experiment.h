@@ -21,11 +21,12 @@ struct Column {
   std::string title;  ///< for people; names the unit ("error, u^2")
 };
 
-/// One point a row, one line for each value of the series' column; columns by key.
+/// One point a row, one colour for each value of the series' column; columns by key.
 struct Plot {
   std::string title;
   std::string x, y, series;
   bool logX = true, logY = true;
+  bool joined = true;  ///< by lines, row after row; not where rows are choices and no steps of anything
 };
 
 struct Report {

@@ -67,8 +67,9 @@ Report run(const Settings& settings, Progress& progress) {
     }
     progress.at(static_cast<double>(p + 1) / kPlaces.size());
   }
-  report.plots = {{"Worst error over the distance from the origin", "originMeters", "errorPixels", "scheme"},
-                  {"Worst error over time, all distances", "timeNsPerVertex", "errorPixels", "scheme"}};
+  report.plots = {
+      {"Worst error over the distance from the origin", "originMeters", "errorPixels", "scheme"},
+      {"Worst error over time, all distances", "timeNsPerVertex", "errorPixels", "scheme", true, true, false}};
   report.findings = findings(atMoon, atNeptune);
   return report;
 }

@@ -14,10 +14,10 @@
 namespace terrane::accuracy {
 namespace {
 
-constexpr double kWidth = 760, kHeight = 420, kLeft = 78, kRight = 200, kTop = 16, kBottom = 52;
+constexpr double kWidth = 880, kHeight = 420, kLeft = 78, kRight = 300, kTop = 16, kBottom = 52;
 /// Colours that differ for most kinds of colour blindness (Okabe and Ito), and darker ones after them.
-constexpr std::array<const char*, 10> kColors{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
-                                              "#56B4E9", "#000000", "#7F3C8D", "#8C564B", "#666666"};
+constexpr std::array<const char*, 12> kColors{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
+                                              "#000000", "#7F3C8D", "#8C564B", "#666666", "#A3A500", "#AA0044"};
 
 std::optional<double> number(const Value& value) {
   if (const auto* real = std::get_if<double>(&value)) return std::isfinite(*real) ? std::optional(*real) : std::nullopt;
@@ -161,9 +161,9 @@ std::string plotSvg(const Plot& plot, const Report& report) {
   for (std::size_t i = 0; i < all.lines.size(); ++i) {
     const char* color = kColors[i % kColors.size()];
     std::string path;
-    for (const auto& [px, py] : all.lines[i].points)
+    for (const auto& [px, py] : plot.joined ? all.lines[i].points : decltype(all.lines[i].points){})
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', x.at(px), y.at(py));
-    out += fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.6'/>\n", path, color);
+    if (!path.empty()) out += fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.6'/>\n", path, color);
     for (const auto& [px, py] : all.lines[i].points)
       out += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.4' fill='{}'/>\n", x.at(px), y.at(py), color);
     const double at = kTop + 12 + 17 * static_cast<double>(i);

@@ -200,8 +200,8 @@ Report run(const Settings& settings, Progress& progress) {
     if (s.lattice && s.edgebreaker && s.speed == 7) latticeSize = o.kibibytes;
     progress.at(static_cast<double>(i + 1) / static_cast<double>(list.size()));
   }
-  report.plots = {{"Surface error over bytes", "kibibytes", "surfaceMeters", "positions", false, true},
-                  {"Bytes over time to encode", "timeEncodeMs", "kibibytes", "method", true, false}};
+  report.plots = {{"Surface error over bytes", "kibibytes", "surfaceMeters", "positions", false, true, false},
+                  {"Bytes over time to encode", "timeEncodeMs", "kibibytes", "method", true, false, false}};
   report.findings = {
       fmt::format("A box of its own leaves a gap of {:.2g} m at the seam even with 16 bits; the lattice leaves none, "
                   "for {:.1f} KiB in place of "

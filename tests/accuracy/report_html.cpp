@@ -16,7 +16,7 @@ h1 { font-size: 1.7rem; } h2 { margin-top: 3rem; border-top: 1px solid #ccc; pad
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }
 th, td { padding: .18rem .6rem; border-bottom: 1px solid #e2e2e2; text-align: right; white-space: nowrap; }
 th { border-bottom: 2px solid #888; vertical-align: bottom; } td.text, th.text { text-align: left; }
-figure { margin: 1rem 0; } svg { width: 100%; height: auto; max-width: 760px; font: 12px system-ui, sans-serif; }
+figure { margin: 1rem 0; } svg { width: 100%; height: auto; max-width: 880px; font: 12px system-ui, sans-serif; }
 figcaption { font-size: 13px; color: #444; } .grid { stroke: #ddd; } .axis { font-size: 13px; }
 </style></head><body>
 <h1>What accuracy costs</h1>
