@@ -7,6 +7,8 @@
 #include <array>
 #include <string>
 
+#include "common/numerics/strict_math.h"
+
 namespace terrane {
 namespace {
 

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 
+#include "common/numerics/strict_math.h"
 #include "proto/draco_input.h"
 
 namespace terrane {

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/numerics/strict_math.h"
 #include "proto/glb_container.h"
 #include "proto/gltf_tile.h"
 

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/numerics/strict_math.h"
+
 namespace terrane::lunar {
 
 /// From this wavelength on a level computes everything in float32: its rounding, below kCoarseRounding in all (some

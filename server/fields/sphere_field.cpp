@@ -1,5 +1,7 @@
 #include "server/fields/sphere_field.h"
 
+#include "common/numerics/strict_math.h"
+
 namespace terrane {
 
 void SphereField::evaluate(const SampleBatch& batch, double, SurfaceSamples& out) const {
