@@ -19,7 +19,8 @@ struct Nearest {
   double foreshortening(double distanceMeters) const noexcept {
     const double top = half[0] * half[1];
     const double projected = half[1] * half[2] * excess[0] + half[2] * half[0] * excess[1] + top * excess[2];
-    if (!(distanceMeters > 0) || !(top > 0)) return 1.0;
+    // Beyond about 1e154 m the distance is infinite, and the shares below may be too.
+    if (!(distanceMeters > 0) || !(top > 0) || std::isinf(distanceMeters)) return 1.0;
     return std::clamp(std::sqrt(projected / (top * distanceMeters)), kLeastForeshortening, 1.0);
   }
 };

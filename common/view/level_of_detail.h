@@ -18,11 +18,12 @@ inline constexpr double kLeastForeshortening = 0.4;
 /// Distance from a point to an oriented box, 0 inside; metres.
 double distanceMeters(const OrientedBox& box, const glm::dvec3& pointBody) noexcept;
 
-/// kLeastForeshortening .. 1, as said above; 1 inside the box. halfAxes[2] is taken to be vertical. Continuous outside
-/// of the box.
+/// kLeastForeshortening .. 1, as said above; 1 inside the box, and so far away that the distance is infinite.
+/// halfAxes[2] is taken to be vertical. Continuous outside of the box.
 double foreshortening(const OrientedBox& box, const glm::dvec3& pointBody) noexcept;
 
-/// geometricErrorMeters * pixelsPerRadian / distance * foreshortening; infinite at distance 0.
+/// geometricErrorMeters * pixelsPerRadian / distance * foreshortening; infinite at distance 0, never NaN for a finite
+/// camera.
 double screenSpaceErrorPixels(double geometricErrorMeters, const OrientedBox& box, const Camera& camera) noexcept;
 
 }  // namespace terrane

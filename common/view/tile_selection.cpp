@@ -315,6 +315,7 @@ TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const
                           const SelectionSettings& settings) {
   const glm::dvec3& p = camera.positionBody;
   if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return {};
+  if (!std::isfinite(pixelsPerRadian(camera))) return {};  // no order among errors that are NaN
   return Selector(camera, body, resident, settings).run();
 }
 

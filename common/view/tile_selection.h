@@ -68,6 +68,7 @@ struct TileSelection {
   bool rootsMissing = false;       ///< some visible face has no resident tile at all: nothing can be drawn there yet
 };
 
+/// From a camera that is nowhere (a position or field of view that is not finite): nothing, and not complete.
 TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const ResidentLookup& resident,
                           const SelectionSettings& settings);
 

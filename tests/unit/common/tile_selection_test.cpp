@@ -383,21 +383,5 @@ TEST(TileSelection, AsksAheadForAFewLevelsButNotForTheWholePlanet) {
   EXPECT_LT(rounds, 15);  // of 24 levels
 }
 
-TEST(TileSelection, StandsAnywhere) {
-  // A face's corner, the planet's centre, very far out, below ground, nowhere.
-  const double corner = std::asin(1 / std::sqrt(3.0));
-  for (const ViewPose& pose :
-       {ViewPose{kPi / 4, corner, 10, 0, -0.3}, ViewPose{0, 0, -kMoon, 0, 0}, ViewPose{0, 0, 1e15, 0, -kPi / 2},
-        ViewPose{1, 1, -5000, 0, 0}, ViewPose{0, kPi / 2, 1, 0, -kPi / 2}}) {
-    Residents residents;
-    const TileSelection selection = settle(cameraFromPose(pose, kMoon, 0.9, 1280, 720), moon(), {}, residents);
-    EXPECT_TRUE(selection.complete);
-    expectDisjointAndBalanced(selection.draw);
-  }
-  Camera nowhere;
-  nowhere.positionBody = glm::dvec3(std::nan(""));
-  EXPECT_TRUE(selectTiles(nowhere, moon(), {}, {}).wanted.empty());
-}
-
 }  // namespace
 }  // namespace terrane
