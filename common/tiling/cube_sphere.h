@@ -13,7 +13,7 @@
 namespace terrane {
 
 /// tan(x pi/4) for x in [-1, 1]. Odd to the bit; exactly 1 at 1. Relative error <= kTanQuarterPiError
-/// (cube_sphere_test).
+/// (quarter_pi_test).
 double tanQuarterPi(double x) noexcept;
 inline constexpr double kTanQuarterPiError = 4.5e-16;
 

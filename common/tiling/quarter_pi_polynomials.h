@@ -25,7 +25,7 @@ inline constexpr std::array<double, 11> kArcTangent{-0x1.b2995e7b7b5e4p-2, 0x1.0
                                                     -0x1.5b7e43f89f58ep-4, 0x1.30fa15c77b4d5p-4,  -0x1.06cd9d010180cp-4,
                                                     0x1.8d0075f642198p-5,  -0x1.7582d418f0bbep-6};
 
-/// Relative error of either in exact arithmetic (cube_sphere_test).
+/// Relative error of either in exact arithmetic (quarter_pi_test).
 inline constexpr double kPolynomialError = 0x1p-57;
 
 }  // namespace terrane::quarter_pi

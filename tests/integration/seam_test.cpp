@@ -13,10 +13,13 @@
 #include "common/tiling/lattice.h"
 #include "proto/gltf_tile.h"
 #include "server/build/tile_builder.h"
+#include "tests/support/edge_vertices.h"
 #include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {
+
+using namespace testing_support;
 
 constexpr unsigned kSeed = 24;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -24,27 +27,6 @@ constexpr int kPairs = 400;
 #else
 constexpr int kPairs = 10'000;
 #endif
-
-/// What a shared vertex must agree in.
-struct EdgeVertex {
-  LatticePoint point{0};
-  std::array<float, 3> normal{};
-  bool operator==(const EdgeVertex&) const = default;
-};
-
-std::size_t gridIndexOnEdge(Side edge, std::size_t cells, std::size_t k) {
-  const std::size_t side = cells + 1;
-  switch (edge) {
-    case Side::UMin:
-      return k * side;
-    case Side::UMax:
-      return k * side + cells;
-    case Side::VMin:
-      return k;
-    default:
-      return cells * side + k;
-  }
-}
 
 /// A tile as a viewer gets it: from its bytes.
 Tile decoded(const TileBuilder& builder, const FacePath& path) {
@@ -54,39 +36,6 @@ Tile decoded(const TileBuilder& builder, const FacePath& path) {
   Result<Tile> tile = decodeTile(built->glb);
   EXPECT_TRUE(tile.has_value()) << (tile.has_error() ? tile.error().text() : "");
   return tile.has_value() ? std::move(*tile) : Tile{};
-}
-
-std::vector<EdgeVertex> edgeVertices(const Tile& tile, Side edge) {
-  const auto cells = static_cast<std::size_t>(tile.metadata.cellsPerEdge);
-  std::vector<std::size_t> vertexOfGridIndex(tile.mesh.vertexCount());
-  for (std::size_t vertex = 0; vertex < tile.mesh.vertexCount(); ++vertex)
-    vertexOfGridIndex[tile.mesh.gridIndices[vertex]] = vertex;
-  std::vector<EdgeVertex> vertices;
-  for (std::size_t k = 0; k <= cells; ++k) {
-    const std::size_t at = 3 * vertexOfGridIndex[gridIndexOnEdge(edge, cells, k)];
-    const auto& offsets = tile.mesh.offsets;
-    const auto& normals = tile.mesh.normals;
-    vertices.push_back({tile.metadata.origin + LatticePoint(offsets[at], offsets[at + 1], offsets[at + 2]),
-                        {normals[at], normals[at + 1], normals[at + 2]}});
-  }
-  return vertices;
-}
-
-/// The edge of `tile` that lies against `other`. At level 0 and beyond, two tiles share one edge at most.
-std::optional<Side> edgeTowards(const FacePath& tile, const FacePath& other) {
-  for (int side = 0; side < kEdgeCount; ++side)
-    if (tile.neighbour(static_cast<Side>(side)) == other) return static_cast<Side>(side);
-  return std::nullopt;
-}
-
-void expectSameEdge(const Tile& tile, Side side, const Tile& neighbour) {
-  const std::optional<Side> back = edgeTowards(neighbour.metadata.path, tile.metadata.path);
-  ASSERT_TRUE(back.has_value());
-  const std::vector<EdgeVertex> mine = edgeVertices(tile, side);
-  std::vector<EdgeVertex> theirs = edgeVertices(neighbour, *back);
-  if (!(theirs.front().point == mine.front().point)) std::reverse(theirs.begin(), theirs.end());
-  ASSERT_EQ(tile.metadata.stepExponent, neighbour.metadata.stepExponent);
-  EXPECT_EQ(mine, theirs) << tile.metadata.path.text() << " and " << neighbour.metadata.path.text();
 }
 
 FacePath randomTile(std::mt19937_64& random, int level) {

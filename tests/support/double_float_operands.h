@@ -1,20 +1,14 @@
 #pragma once
-// Operands for double-float's searches: random, with deliberately awkward ones in their midst; and MPFR's arithmetic to
-// compare with.
+// Operands for double-float's searches: random, with deliberately awkward ones in their midst.
 
-#include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
 #include <cstdint>
 #include <random>
 
 #include "common/numerics/double_float.h"
+#include "tests/support/high_precision.h"
 
 namespace terrane::test {
-
-/// 60 digits, 200 bits: sums and products of pairs are exact, quotients and roots as good as.
-using HighPrecision =
-    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<60, boost::multiprecision::allocate_stack>,
-                                  boost::multiprecision::et_off>;
 
 inline HighPrecision exact(const DoubleFloat& x) { return HighPrecision(x.hi) + HighPrecision(x.lo); }
 

@@ -1,41 +1,76 @@
+// The horizon, from a micrometre above ground to far out: its distance against MPFR, and that it hides what the sphere
+// stands before and nothing else, nothing at all from at or inside the sphere.
+
 #include "common/view/horizon.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iostream>
 #include <limits>
 #include <random>
+
+#include "tests/numeric/samples.h"
+#include "tests/support/high_precision.h"
 
 namespace terrane {
 namespace {
 
 constexpr double kEarth = 6'371'000.0;
-constexpr unsigned kSeed = 45;
 
-TEST(Horizon, IsWhereItShouldBeFromOneMetreAndFromOneMillimetre) {
-  EXPECT_NEAR(horizonDistanceMeters(kEarth, 1.0), 3569.594, 0.001);
-  EXPECT_NEAR(horizonDistanceMeters(kEarth, 1e-3), 112.880, 0.001);
-  // The control: the textbook formula in float is 22 m short from one metre, and sees no horizon at all from a
-  // millimetre.
-  const auto textbook = [](float radius, float height) {
-    const float distance = radius + height;
-    return std::sqrt(distance * distance - radius * radius);
-  };
-  EXPECT_GT(std::abs(textbook(6'371'000.0f, 1.0f) - 3569.594f), 20.0f);
-  EXPECT_EQ(textbook(6'371'000.0f, 1e-3f), 0.0f);
+using test::HighPrecision;
+
+HighPrecision exactDistance(double radiusMeters, double heightMeters) {
+  const HighPrecision r = radiusMeters, h = heightMeters;
+  return sqrt(HighPrecision(h * (2 * r + h)));
 }
 
-TEST(Horizon, DistanceIsWithinFourRoundingsFromAMicrometreUp) {
-  for (double height = 1e-6; height < 1e12; height *= 3.7) {
-    const long double h = height, r = kEarth;
-    const long double exact = std::sqrt(h * (2 * r + h));
-    EXPECT_LE(std::abs(static_cast<long double>(horizonDistanceMeters(kEarth, height)) - exact), 4 * 1.11e-16L * exact)
-        << height;
+double relativeError(double distance, const HighPrecision& exact) {
+  return static_cast<double>(HighPrecision(abs(HighPrecision(HighPrecision(distance) / exact - 1))));
+}
+
+/// The control: the textbook's formula, from the distance to the centre.
+template <class Real>
+Real textbook(Real radius, Real height) {
+  const Real distance = radius + height;
+  return std::sqrt(distance * distance - radius * radius);
+}
+
+TEST(HorizonDistance, IsRightFromOneMetreAndOneMillimetreWhereFloatLosesIt) {
+  EXPECT_NEAR(horizonDistanceMeters(kEarth, 1.0), 3569.594, 0.001);
+  EXPECT_NEAR(horizonDistanceMeters(kEarth, 1e-3), 112.880, 0.001);
+  std::cout << "control, float: " << textbook(6'371'000.0f, 1.0f) << " m from 1 m, " << textbook(6'371'000.0f, 1e-3f)
+            << " m from 1 mm\n";
+  EXPECT_NEAR(textbook(6'371'000.0f, 1.0f), 3547, 1) << "22 m short";
+  EXPECT_EQ(textbook(6'371'000.0f, 1e-3f), 0.0f) << "no horizon at all";
+}
+
+TEST(HorizonDistance, IsWithinFourRoundingsFromAMicrometreUp) {
+  // Two sums and a product under the root count half each, the root's own rounding once: 2.5 u. The header says 4.
+  const double bound = 4 * 0x1p-53;
+  double worst = 0, worstControl = 0;
+  for (const double radius : {250.0, 1'737'400.0, kEarth, 7e8}) {
+    for (double height = 1e-6; height < 1e12; height *= 1.37) {
+      const HighPrecision exact = exactDistance(radius, height);
+      const double error = relativeError(horizonDistanceMeters(radius, height), exact);
+      ASSERT_LE(error, bound) << height << " m over " << radius;
+      worst = std::max(worst, error);
+      worstControl = std::max(worstControl, relativeError(textbook(radius, height), exact));
+    }
   }
+  std::cout << "worst " << worst << ", bound " << bound
+            << "; control, the textbook's formula in double: " << worstControl << '\n';
+  EXPECT_GT(worstControl, 0.01);
+}
+
+TEST(HorizonDistance, IsZeroAtTheSphereAndInsideIt) {
   EXPECT_EQ(horizonDistanceMeters(kEarth, 0), 0);
+  EXPECT_EQ(horizonDistanceMeters(kEarth, -0.0), 0);
   EXPECT_EQ(horizonDistanceMeters(kEarth, -5), 0);
   EXPECT_EQ(horizonDistanceMeters(kEarth, std::numeric_limits<double>::quiet_NaN()), 0);
+  EXPECT_TRUE(std::isnan(textbook(kEarth, -5.0))) << "the control";
 }
 
 /// Does the segment between the two points cross the sphere? In extended precision, by its nearest point to the centre.
@@ -49,8 +84,7 @@ bool sphereBetween(const glm::dvec3& from, const glm::dvec3& to, double radius) 
 }
 
 TEST(Horizon, HidesExactlyWhatTheSphereStandsBefore) {
-  std::mt19937_64 random(kSeed);
-  RecordProperty("seed", kSeed);
+  std::mt19937_64 random = test::seededRandom(45);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> unit(0, 1);
   const auto direction = [&] { return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))); };
@@ -86,12 +120,21 @@ TEST(Horizon, StandsWhereItShouldOneMillimetreAboveGround) {
   EXPECT_TRUE(horizon.hides(onGround(130)));
 }
 
+/// The control: the test without asking first whether there is a horizon (Ring 2013, as it is written).
+bool hidesUnasked(const glm::dvec3& camera, const glm::dvec3& point, double occluderMeters) {
+  const glm::dvec3 c = camera / occluderMeters, toPoint = point / occluderMeters - c;
+  const double horizonSquared = glm::dot(c, c) - 1, inward = -glm::dot(toPoint, c);
+  return inward > horizonSquared && inward * inward > horizonSquared * glm::dot(toPoint, toPoint);
+}
+
 TEST(Horizon, HidesNothingFromAtOrInsideTheSphere) {
   for (const double altitude : {0.0, -1e-9, -100.0, -kEarth, -1e9}) {
     const Horizon horizon({kEarth + altitude, 0, 0}, kEarth, altitude, kEarth);
     EXPECT_FALSE(horizon.active());
     EXPECT_FALSE(horizon.hides({-kEarth, 0, 0}));
   }
+  // From inside, nothing stands before the far wall.
+  EXPECT_TRUE(hidesUnasked({kEarth - 100, 0, 0}, {-kEarth, 0, 0}, kEarth)) << "the control hides it";
   // In a crater: below the reference sphere, above the lowest terrain.
   EXPECT_TRUE(Horizon({kEarth - 500, 0, 0}, kEarth, -500, kEarth - 1000).active());
   EXPECT_FALSE(Horizon({kEarth - 1000, 0, 0}, kEarth, -1000, kEarth - 1000).active());
