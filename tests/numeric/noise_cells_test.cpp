@@ -216,8 +216,9 @@ TEST(Noise, IsContinuousWhereItsCellsAreTurnedAgainstTheAxes) {
     to.push_back({std::nextafter(p.x, 2e6), std::nextafter(p.y, -2e6), p.z});
   }
   const std::vector<double> a = noiseAt<float>(from, octave, kTurned), b = noiseAt<float>(to, octave, kTurned);
-  // The rotation's roundings move the cell coordinate by some more ulps of it, up to 2^-53 * 8 * 2e6 / 32.
-  const double bound = largestChange<float>(0x1p-32, 2e6 / 32, octave) + kNoiseSlope * 8 * 0x1p-53 * 2e6 / 32;
+  // Five roundings turn a coordinate, of numbers below 2e6, on three axes and at both ends: 5 * 2 * 1.74, and as much
+  // again for the sum with the offset.
+  const double bound = largestChange<float>(0x1p-32, 2e6 / 32, octave) + kNoiseSlope * 35 * 0x1p-53 * 2e6 / 32;
   for (std::size_t i = 0; i < a.size(); ++i) ASSERT_LE(std::fabs(a[i] - b[i]), bound);
 }
 
