@@ -66,8 +66,8 @@ struct ViewSession::State {
   void nameUnknownEffects();
   bool takeArrivals(const UploadBudget& budget);
   ViewPose resolved(const View& view) const;
-  std::vector<WantedTile> groundChain(double errorPixels) const;
-  bool requestTiles(double errorPixels, bool groundFirst);
+  std::vector<WantedTile> groundChain(double allowedPixels) const;
+  bool requestTiles(double allowedPixels, bool groundFirst);
 };
 
 ViewSession::ViewSession(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -162,13 +162,13 @@ ViewPose ViewSession::State::resolved(const View& view) const {
 
 // The tiles under the camera, down to the level that its height calls for, whether it looks there or not: the ground's
 // height comes from them.
-std::vector<WantedTile> ViewSession::State::groundChain(double errorPixels) const {
+std::vector<WantedTile> ViewSession::State::groundChain(double allowedPixels) const {
   const SelectionBody& body = stream->body()->selection;
   const glm::dvec3 direction = directionOf(pose.longitude, pose.latitude);
   const auto ground = stream->groundBelow(direction);
   const double height =
       std::max(pose.altitudeMeters - (ground ? ground->heightMeters : 0.0), kLowestHeightAboveGroundMeters);
-  const double allowedMeters = errorPixels * height / pixelsPerRadian(camera);
+  const double allowedMeters = allowedPixels * height / pixelsPerRadian(camera);
   std::vector<WantedTile> chain;
   for (int level = 0; level <= body.maxLevel; ++level) {
     const double error = body.geometricErrorMeters[static_cast<std::size_t>(level)];
@@ -181,9 +181,9 @@ std::vector<WantedTile> ViewSession::State::groundChain(double errorPixels) cons
 
 // Asks for the selection and the ground; true when the ground's finest wanted tile is there. groundFirst: the camera's
 // own height depends on the ground, so until that is known no fine tile is asked for where the camera only seems to be.
-bool ViewSession::State::requestTiles(double errorPixels, bool groundFirst) {
+bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst) {
   std::vector<WantedTile> wanted = selection.wanted;
-  const std::vector<WantedTile> chain = groundChain(errorPixels);
+  const std::vector<WantedTile> chain = groundChain(allowedPixels);
   const bool groundKnown = stream->resident(chain.back().path) != nullptr;
   if (groundFirst && !groundKnown) {
     const auto ground = stream->groundBelow(directionOf(pose.longitude, pose.latitude));
