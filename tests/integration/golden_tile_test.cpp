@@ -55,8 +55,9 @@ std::vector<FacePath> goldenPaths() {
     const std::uint64_t last = (std::uint64_t{1} << level) - 1;
     for (int k = 0; k < 4; ++k) {
       const auto column = static_cast<std::uint32_t>(k == 3 ? last : random() & last);
-      paths.push_back(FacePath::cubeTile(static_cast<int>(random() % 6), level, column,
-                                         static_cast<std::uint32_t>(random() & last)));
+      // One after the other: compilers differ in which argument of a call they evaluate first.
+      const auto row = static_cast<std::uint32_t>(random() & last);
+      paths.push_back(FacePath::cubeTile(static_cast<int>(random() % 6), level, column, row));
     }
   }
   return paths;

@@ -23,7 +23,8 @@ constexpr std::size_t kSide = kCells + 1;
 FacePath randomTile(std::mt19937_64& random, int level) {
   const std::uint64_t mask = (std::uint64_t{1} << level) - 1;
   const auto column = static_cast<std::uint32_t>(random() % 4 == 0 ? mask : random() & mask);
-  return FacePath::cubeTile(static_cast<int>(random() % 6), level, column, static_cast<std::uint32_t>(random() & mask));
+  const auto row = static_cast<std::uint32_t>(random() & mask);
+  return FacePath::cubeTile(static_cast<int>(random() % 6), level, column, row);
 }
 
 glm::dvec3 directionAt(const GridDirections& grid, std::size_t i, std::size_t j) {
