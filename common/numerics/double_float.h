@@ -6,13 +6,11 @@
 //
 // u = 2^-24. Each function states its proven bound on the relative error in units of u^2, as a constant, and where the
 // proof is:
-//   [JMP17]  Joldes, Muller, Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
-//   arithmetic", ACM
-//            TOMS 44(2), 2017
-//   [MR22]   Muller, Rideau, "Formalization of double-word arithmetic, and comments on [JMP17]", ACM TOMS 48(1), 2022
-//   [LLMPR23] Lefevre, Louvet, Muller, Picot, Rideau, "Accurate calculation of Euclidean norms using double-word
-//   arithmetic", ACM
-//            TOMS 49(1), 2023
+//   [JMP17]    Joldes, Muller, Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
+//              arithmetic", ACM TOMS 44(2), 2017
+//   [MR22]     Muller, Rideau, "Formalization of double-word arithmetic, and comments on [JMP17]", ACM TOMS 48(1), 2022
+//   [LLMPR23]  Lefevre, Louvet, Muller, Picot, Rideau, "Accurate calculation of Euclidean norms using double-word
+//              arithmetic", ACM TOMS 49(1), 2023
 // tests/numeric measures all of them, and tests/capture the shaders' forms. The "sloppy" sum of [JMP17] has no bound
 // for opposite signs and is not here.
 //
@@ -26,7 +24,8 @@
 //   +-0            as float has it, sign included
 //   denormals      exact in sums. In products, quotients and roots an error term below 2^-149 is lost: the result
 //   decays
-//                  to a plain float's accuracy, and to 0 where a float's does
+//                  to a plain float's accuracy (8 u, or 2^-148), and to 0 where a float's does
+//   from 2^127 on  a plain float's accuracy: what is in between overflows
 // The error-free transforms are bare: NaN or infinity in an operand, or an overflow, leaves NaN or infinity in hi or
 // lo, never a finite wrong number; the error of +-0 is +0.
 // Thread-safe.
@@ -96,6 +95,7 @@ constexpr bool isFinite(float x) noexcept { return x - x == 0; }
 constexpr DoubleFloat settleSum(float plain, const DoubleFloat& bare) noexcept {
   if (!isFinite(plain)) return {plain, 0.0f};
   if (bare.hi == 0) return {plain == 0 ? plain : 0.0f, 0.0f};
+  if (bare.hi != bare.hi) return {plain, 0.0f};  // near the largest float, where what is in between overflows
   return {bare.hi, isFinite(bare.hi) ? bare.lo : 0.0f};
 }
 
@@ -111,7 +111,7 @@ constexpr DoubleFloat settle(float plain, const DoubleFloat& bare) noexcept {
 
 // ---- error-free transforms: hi is the rounded result, hi + lo the exact one ----
 
-/// Exact for any two finite floats whose sum does not overflow (Knuth; 6 operations).
+/// Exact for any two floats below 2^127 (Knuth; 6 operations).
 inline DoubleFloat twoSum(float a, float b) noexcept { return double_float_bare::twoSum(a, b); }
 
 /// As twoSum with 3 operations. Precondition: |a| >= |b| or a = 0 (Dekker); the other way round it may lose all of a's
@@ -122,7 +122,8 @@ inline DoubleFloat fastTwoSum(float a, float b) noexcept {
 }
 
 /// The exact product by Dekker's split (17 operations), for machines without a fused multiply-add: and, since its
-/// operations are a shader's too, the form that everything below uses. Exact for 2^-102 <= |a b| < 2^127 (or a b = 0).
+/// operations are a shader's too, the form that everything below uses. Exact for |a|, |b| < 2^127 and
+/// 2^-102 <= |a b| < 2^127 (or a b = 0).
 inline DoubleFloat twoProd(float a, float b) noexcept { return double_float_bare::twoProd(a, b); }
 
 /// The same by a fused multiply-add: 2 operations where the hardware has it. Exact for 2^-102 <= |a b| <= FLT_MAX.
@@ -130,13 +131,13 @@ inline DoubleFloat twoProdFma(float a, float b) noexcept { return double_float_b
 
 // ---- conversions ----
 
-/// Within u^2: 2.5e-4 m at 1 AU. Beyond float's range: infinite.
+/// Within u^2 / 2: 2.7e-4 m at 1 AU. Beyond float's range: infinite.
 constexpr DoubleFloat fromDouble(double value) noexcept {
   const float hi = static_cast<float>(value);
   if (!double_float_detail::isFinite(hi) || hi == 0) return {hi, 0.0f};
   return {hi, static_cast<float>(value - static_cast<double>(hi))};
 }
-inline constexpr double kFromDoubleBound = 1.0;
+inline constexpr double kFromDoubleBound = 0.5;
 
 /// Exact for every pair that spans 53 bits or less, else rounded to nearest.
 constexpr double toDouble(const DoubleFloat& x) noexcept {
@@ -167,6 +168,7 @@ inline float addAndDemote(const DoubleFloat& x, const DoubleFloat& y) noexcept {
   const float plain = x.hi + y.hi;
   if (!double_float_detail::isFinite(plain)) return plain;
   const float sum = double_float_bare::addPairToFloat(x, y);
+  if (sum != sum) return plain;
   return sum == 0 && plain == 0 ? plain : sum;  // the sign of 0 as a float has it
 }
 /// x - y as a float: what placing a vertex relative to the camera needs.

@@ -88,11 +88,11 @@ inline DoubleFloat dot(const DoubleFloat3& x, const DoubleFloat3& y) noexcept {
 }
 inline constexpr double kDotBound = 11.0;
 
-/// Half the square's 11 u^2, and the root's 25/8.
-inline DoubleFloat length(const DoubleFloat3& x) noexcept { return double_float_bare::lengthPair(x); }
+/// Half the square's 11 u^2, and the root's 25/8. 0 of the zero vector, whose bare length is NaN.
+inline DoubleFloat length(const DoubleFloat3& x) noexcept { return squareRoot(dot(x, x)); }
 inline constexpr double kLengthBound = 5.5 + kSquareRootBound;
 
-/// Half the square's 11 u^2, the inverse root's and the last product's 5, a component.
+/// Half the square's 11 u^2, the inverse root's and the last product's 5, a component. NaN of the zero vector.
 inline DoubleFloat3 normalize(const DoubleFloat3& x) noexcept { return double_float_bare::normalizePair(x); }
 inline constexpr double kNormalizeBound = 5.5 + kInverseSquareRootBound + kMultiplyBound;
 inline constexpr double kNormalizeShaderBound = 5.5 + kInverseSquareRootShaderBound + kMultiplyBound;

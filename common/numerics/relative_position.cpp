@@ -1,5 +1,6 @@
 #include "common/numerics/relative_position.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace terrane {
@@ -7,7 +8,8 @@ namespace terrane {
 CameraOnLattice cameraOnLattice(const glm::dvec3& cameraBody, double stepMeters) noexcept {
   CameraOnLattice camera;
   for (int axis = 0; axis < 3; ++axis) {
-    const double inSteps = cameraBody[axis] / stepMeters;  // by a power of two: exact
+    const double exact = cameraBody[axis] / stepMeters;  // by a power of two
+    const double inSteps = std::isnan(exact) ? 0 : std::clamp(exact, -0x1p62, 0x1p62);
     const double whole = std::floor(inSteps);
     camera.steps[axis] = static_cast<std::int64_t>(whole);
     camera.rest[axis] = static_cast<float>(inSteps - whole);

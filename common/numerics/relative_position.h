@@ -9,9 +9,10 @@
 //   camera-relative    float(position - camera), by   u of itself, +- 2^-53 of the distance from the origin; costs the
 //                      the CPU, every frame           CPU and the bus 12 bytes a vertex and frame
 //   double-float       two floats (double_float3.h)   u of itself, +- 2 u^2 of the distance from the origin
-//   65536 m and rest   two floats, added word by      u of itself, +- 2^-9 m: half an ulp of 65536 m (Cesium)
-//                      word
-//   tile and offset    tiled_position.h               +- the offset's rounding, a quarter of a tile's u
+//   65536 m and rest   two floats, added word by      u of itself, +- 2^-8 m: half an ulp below 65536 m for each of the
+//                      word                           two; to 2^40 m, where multiples of 65536 m end (Cesium)
+//   tile and offset    tiled_position.h               +- u S / 2 for what is near (relativeByHalves): half an ulp below
+//                                                     S/2 for each of the two; twice that by tiles and offsets
 
 #include <cstdint>
 #include <glm/ext/vector_int3_sized.hpp>
@@ -50,7 +51,7 @@ struct CameraOnLattice {
   glm::i64vec3 steps{0};
   glm::vec3 rest{0.0f};
 };
-/// stepMeters: a power of two.
+/// stepMeters: a power of two. Beyond +-2^62 steps, or where it is NaN: clamped, or 0.
 CameraOnLattice cameraOnLattice(const glm::dvec3& cameraBody, double stepMeters) noexcept;
 
 /// origin - camera in steps as the shader's 32-bit integers; empty when a component is beyond +-kMaxPlacedSteps. A

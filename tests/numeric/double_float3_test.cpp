@@ -65,6 +65,7 @@ TEST(DoubleFloat3, LengthsDirectionsAndDotProductsStayWithinTheirBounds) {
   std::cout << "length: worst " << worstLength << " u^2, bound " << kLengthBound << "; direction: " << worstDirection
             << " u^2, bound " << kNormalizeBound << "; dot product: " << worstDot << " u^2 of its terms, bound "
             << kDotBound << "; control, float's length: " << control << " u^2\n";
+  EXPECT_EQ(length(DoubleFloat3()).hi, 0.0f);
   EXPECT_LE(worstLength, kLengthBound);
   EXPECT_LE(worstDirection, kNormalizeBound);
   EXPECT_LE(worstDot, kDotBound);

@@ -40,7 +40,7 @@ bool sameBits(float a, float b) {
 }
 
 TEST(DoubleFloatSpecialValues, EveryFunctionGivesNaNInfinitiesZerosAndOverflowAsFloatDoes) {
-  const std::array<float, 14> values{0.0f,
+  const std::array<float, 16> values{0.0f,
                                      -0.0f,
                                      1.0f,
                                      -2.0f,
@@ -53,6 +53,8 @@ TEST(DoubleFloatSpecialValues, EveryFunctionGivesNaNInfinitiesZerosAndOverflowAs
                                      Limits::denorm_min(),
                                      -Limits::denorm_min(),
                                      0x1p-75f,
+                                     0x1.8p104f,
+                                     -0x1.8p104f,
                                      0x1p120f};
   std::size_t bareWrong = 0;
   for (const PairOperation& operation : test::pairOperations()) {
@@ -63,8 +65,11 @@ TEST(DoubleFloatSpecialValues, EveryFunctionGivesNaNInfinitiesZerosAndOverflowAs
         const DoubleFloat result = operation.settled(x, y);
         const std::string what = std::string(operation.name) + " " + std::to_string(a) + " " + std::to_string(b);
         if (std::isfinite(plain) && plain != 0) {
-          // A product of whole powers and their like may have an error term; it never moves hi.
-          EXPECT_TRUE(sameBits(result.hi, plain)) << what << ": " << result.hi;
+          // There may be an error term, which never moves hi; but 1/sqrt of floats is rounded twice and is put right.
+          const bool roundedTwice = std::string_view(operation.name) == "inverseSquareRootPair";
+          EXPECT_TRUE(sameBits(result.hi, plain) ||
+                      (roundedTwice && std::fabs(result.hi - plain) <= 3 * 0x1p-24f * plain))
+              << what << ": " << result.hi;
           EXPECT_TRUE(std::isfinite(result.lo)) << what;
         } else {
           EXPECT_TRUE(sameBits(result.hi, plain)) << what << ": " << result.hi;

@@ -101,6 +101,13 @@ TEST(RelativePosition, LatticeIntegersAreExactButForTheCamerasRestAtAnyDistance)
   EXPECT_GT(control, 1e3);
 }
 
+TEST(RelativePosition, ACameraThatIsNowhereIsOnTheLatticeNevertheless) {
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  const CameraOnLattice camera = cameraOnLattice({inf, nan, -1e300}, 0.25);
+  EXPECT_EQ(camera.steps, glm::i64vec3(std::int64_t{1} << 62, 0, -(std::int64_t{1} << 62)));
+  EXPECT_FALSE(originMinusCamera(glm::i64vec3(0), camera.steps));
+}
+
 TEST(RelativePosition, ASplitAt65536MetresLosesMillimetresWherePairsLoseNone) {
   // Cesium's encoding: multiples of 65536 m towards 0, and the rest, each as a float.
   Operands operands(363);
@@ -132,6 +139,15 @@ TEST(TiledPosition, OffsetsKeepTheirBoundAndRegularisationLosesNothing) {
         ASSERT_LE(std::fabs(tiled.offsetMeters[axis]), tileMeters / 2);
         worst = std::max(worst, std::fabs(toDouble(tiled, tileMeters)[axis] - at[axis]));
       }
+      // Just below, on and above a border, where a half that is added in float would be rounded.
+      const double border =
+          (std::floor(at.x / static_cast<double>(tileMeters)) + 0.5) * static_cast<double>(tileMeters);
+      for (const double near :
+           {std::nextafter(border, -1e30), border, std::nextafter(border, 1e30), border - 0.03 * unit(operands)}) {
+        const TiledPosition there = tiledFromDouble(glm::dvec3(near), tileMeters);
+        ASSERT_LE(std::fabs(there.offsetMeters.x), tileMeters / 2);
+        worst = std::max(worst, std::fabs(toDouble(there, tileMeters).x - near));
+      }
       TiledPosition unruly = tiled;
       unruly.offsetMeters += glm::vec3(3 * tileMeters);
       ASSERT_EQ(toDouble(regularised(unruly, tileMeters), tileMeters), toDouble(unruly, tileMeters));
@@ -140,9 +156,14 @@ TEST(TiledPosition, OffsetsKeepTheirBoundAndRegularisationLosesNothing) {
     EXPECT_LE(worst, tiledPositionBound(static_cast<double>(tileMeters)));
     EXPECT_GT(worst, 0.9 * tiledPositionBound(static_cast<double>(tileMeters)));
   }
+  for (const float below : {std::nextafter(0x1p20f, 0.0f), -std::nextafter(0x1p20f, 0.0f), 0x1p20f, -0x1p20f}) {
+    const TiledPosition at{glm::ivec3(0), glm::vec3(below)};
+    EXPECT_EQ(toDouble(regularised(at, 0x1p21f), 0x1p21f).x, static_cast<double>(below)) << below;
+  }
   const float nan = test::Limits::quiet_NaN();
   EXPECT_TRUE(std::isnan(tiledFromDouble(glm::dvec3(nan), 2048.0f).offsetMeters.x));
   EXPECT_EQ(tiledFromDouble(glm::dvec3(test::Limits::infinity()), 2048.0f).tile, glm::ivec3(0));
+  EXPECT_TRUE(std::isnan(tiledFromDouble(glm::dvec3(0x1p42), 2048.0f).offsetMeters.x)) << "out of reach";
 }
 
 TEST(TiledPosition, PrecisionFallsOffTowardsATilesBorderAndWithoutEndWhereOffsetsAreNotRegularised) {

@@ -8,11 +8,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -34,7 +37,12 @@ constexpr unsigned kSeed = 48;
 
 std::size_t hashedTiles() {
   const char* text = std::getenv("TERRANE_HASHED_TILES");
-  return text == nullptr ? kDefaultTiles : static_cast<std::size_t>(std::strtoul(text, nullptr, 10));
+  if (text == nullptr) return kDefaultTiles;
+  std::size_t count = 0;
+  const auto [end, failure] = std::from_chars(text, text + std::strlen(text), count);
+  if (failure != std::errc() || *end != '\0' || count == 0)
+    throw std::invalid_argument("TERRANE_HASHED_TILES is no number of tiles: " + std::string(text));
+  return count;
 }
 
 /// Of all levels, a quarter of them at a border of their face.
