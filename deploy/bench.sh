@@ -41,6 +41,8 @@ python3 - "$work/accuracy/accuracy.json" >"$work/accuracy.md" <<'PY'
 import json, sys
 summary = json.load(open(sys.argv[1]))["experiments"][0]
 keys = list(summary["columns"])
+if not keys:
+    sys.exit("bench: " + summary["findings"][0])
 print("| " + " | ".join(summary["columns"].values()) + " |")
 print("|---" * len(keys) + "|")
 for row in summary["rows"]:

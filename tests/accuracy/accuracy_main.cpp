@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -58,7 +59,7 @@ Result<std::vector<Experiment>> chosen(const std::vector<std::string>& only) {
       for (const Experiment& one : all) names += (names.empty() ? "" : ", ") + std::string(one.name);
       return makeError(ErrorKind::InvalidArgument, "--only", quotedForMessage(name) + " is none of: " + names);
     }
-    found.push_back(*at);
+    if (std::ranges::find(found, at->name, &Experiment::name) == found.end()) found.push_back(*at);
   }
   return found;
 }
@@ -69,6 +70,10 @@ Result<void> run(const Settings& settings, const std::string& directory, const s
   std::error_code failure;
   std::filesystem::create_directories(directory, failure);
   if (failure) return makeError(ErrorKind::Io, "--out", directory + ": " + failure.message());
+  const std::filesystem::path out(directory), json = out / "accuracy.json", page = out / "index.html";
+  // Before minutes of work, not after.
+  for (const auto& file : {json, page})
+    if (!std::ofstream(file, std::ios::app)) return makeError(ErrorKind::Io, "--out", "cannot write " + file.string());
   std::vector<Finished> finished;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const Experiment& experiment = (*list)[i];
@@ -76,16 +81,19 @@ Result<void> run(const Settings& settings, const std::string& directory, const s
     {
       Bar bar(experiment.name, i, list->size());
       bar.at(0);
-      report = experiment.run(settings, bar);
+      try {
+        report = experiment.run(settings, bar);
+      } catch (const std::exception& failure) {
+        return makeError(ErrorKind::Internal, std::string(experiment.name), failure.what());
+      }
     }
     finished.push_back({experiment, std::move(report)});
     fmt::print("{}", textOf(finished.back()));
     std::fflush(stdout);
   }
-  const std::filesystem::path out(directory);
-  if (auto written = write(out / "accuracy.json", jsonOf(settings, finished)); !written) return written;
-  if (auto written = write(out / "index.html", htmlOf(settings, finished)); !written) return written;
-  fmt::print("\n{} and {}\n", (out / "index.html").string(), (out / "accuracy.json").string());
+  if (auto written = write(json, jsonOf(settings, finished)); !written) return written;
+  if (auto written = write(page, htmlOf(settings, finished)); !written) return written;
+  fmt::print("\n{} and {}\n", page.string(), json.string());
   return {};
 }
 

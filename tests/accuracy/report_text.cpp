@@ -63,6 +63,7 @@ std::string jsonOf(const Settings& settings, const std::vector<Finished>& all) {
     nlohmann::ordered_json one;
     one["name"] = finished.experiment.name;
     one["title"] = finished.experiment.title;
+    one["columns"] = nlohmann::ordered_json::object();
     for (const Column& column : finished.report.columns) one["columns"][column.key] = column.title;
     auto& rows = one["rows"] = nlohmann::ordered_json::array();
     for (const auto& row : finished.report.rows) {

@@ -148,9 +148,7 @@ std::string lineAfter(const std::string& text, const std::string& prefix) {
 TEST(TileBytes, DoNotDependOnTheLibrarysFusedMultiplyAdd) {
   std::string output;
   {
-    // Names of glibc 2.26 to 2.32 end in _Usable; what a version does not know it ignores.
-    const EnvironmentVariable mask("GLIBC_TUNABLES",
-                                   "glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-FMA4_Usable,-AVX2,-FMA,-FMA4,-AVX512F");
+    const EnvironmentVariable mask("GLIBC_TUNABLES", testing_support::kWithoutFma.data());
     testing_support::ChildProcess masked({"/proc/self/exe", std::string("--gtest_filter=") + kHashTest});
     ASSERT_EQ(masked.wait(std::chrono::hours(1)), 0) << masked.output() << masked.errors();
     output = masked.output();

@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -21,6 +22,11 @@
 extern char** environ;
 
 namespace terrane::testing_support {
+
+/// For GLIBC_TUNABLES: the C library then chooses its functions as on a CPU without fused multiply-add. Names of glibc
+/// 2.26 to 2.32 end in _Usable; what a version does not know it ignores.
+inline constexpr std::string_view kWithoutFma =
+    "glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-FMA4_Usable,-AVX2,-FMA,-FMA4,-AVX512F";
 
 inline std::string readFile(const std::string& file) {
   std::ostringstream text;

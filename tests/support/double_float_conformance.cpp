@@ -22,15 +22,21 @@ HighPrecision inverseRoot(HP x, HP) { return 1 / sqrt(x); }
 DoubleFloat asPair(float x) { return {x, 0.0f}; }
 DoubleFloat3 asPair(const glm::vec3& x) { return {x, glm::vec3(0.0f)}; }
 
-std::vector<PairOperation> makeOperations() {
-  std::vector<PairOperation> all;
-  // A generic function serves floats and threes alike.
-  const auto operation = [&all](const PairOperation& described, auto bareForm, auto settledForm) {
+/// A generic function serves floats and threes alike.
+struct Adder {
+  std::vector<PairOperation>& all;
+
+  template <class Bare, class Settled>
+  void operator()(const PairOperation& described, Bare bareForm, Settled settledForm) const {
     all.push_back(described);
     all.back().bare = bareForm;
     all.back().bareInThrees = bareForm;
     all.back().settled = settledForm;
-  };
+  }
+};
+
+void addSums(std::vector<PairOperation>& all) {
+  const Adder operation{all};
   operation(
       {.name = "addFloat",
        .title = "pair + float",
@@ -80,6 +86,10 @@ std::vector<PairOperation> makeOperations() {
        .shader = "asPair(subtractPairToFloat(x, y))"},
       [](const auto& x, const auto& y) { return asPair(bare::subtractPairToFloat(x, y)); },
       [](DF x, DF y) { return asPair(subtractAndDemote(x, y)); });
+}
+
+void addProducts(std::vector<PairOperation>& all) {
+  const Adder operation{all};
   operation(
       {.name = "multiplyFloat",
        .title = "pair × float",
@@ -130,6 +140,10 @@ std::vector<PairOperation> makeOperations() {
        .exact = quotient,
        .shader = "dividePair(x, y)"},
       [](const auto& x, const auto& y) { return bare::dividePair(x, y); }, [](DF x, DF y) { return divide(x, y); });
+}
+
+void addRoots(std::vector<PairOperation>& all) {
+  const Adder operation{all};
   operation(
       {.name = "squareRootPair",
        .title = "√ pair",
@@ -155,7 +169,6 @@ std::vector<PairOperation> makeOperations() {
        .shader = "inverseSquareRootPair(x)"},
       [](const auto& x, const auto&) { return bare::inverseSquareRootPair(x); },
       [](DF x, DF) { return inverseSquareRoot(x); });
-  return all;
 }
 
 /// The same magnitude but for the last bits, which is where sums cancel.
@@ -233,7 +246,13 @@ class Leaders {
 }  // namespace
 
 std::span<const PairOperation> pairOperations() {
-  static const std::vector<PairOperation> all = makeOperations();
+  static const std::vector<PairOperation> all = [] {
+    std::vector<PairOperation> made;
+    addSums(made);
+    addProducts(made);
+    addRoots(made);
+    return made;
+  }();
   return all;
 }
 

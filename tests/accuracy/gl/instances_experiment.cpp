@@ -28,22 +28,6 @@ glm::vec3 offsetFrom(const UnitPoint& root, const FinePoint& point) {
   return offset;
 }
 
-template <class Encode>
-std::function<std::vector<std::byte>(const Sample&)> each(Encode encode) {
-  return [encode](const Sample& sample) {
-    std::vector<decltype(encode(FinePoint{}))> values;
-    for (const UnitPoint& vertex : sample.vertices) values.push_back(encode(FinePoint{vertex, glm::dvec3(0.0)}));
-    const auto bytes = gl::bytesOf(values);
-    return std::vector<std::byte>(bytes.begin(), bytes.end());
-  };
-}
-
-void setPair(const gl::Program& program, const std::string& name, const FinePoint& point) {
-  const DoubleFloat3 pair = pairsOf(point);
-  setUniform(program.uniform((name + "High").c_str()), pair.hi);
-  setUniform(program.uniform((name + "Low").c_str()), pair.lo);
-}
-
 constexpr const char* kOffset = "layout(location = 0) in vec3 offset;\n";
 const std::vector<gl::VertexAttribute> kOneVector{{0, 3, Component::F32, Conversion::Float, 0}};
 
@@ -56,7 +40,7 @@ ShaderScheme rootOffset(const UnitPoint& root) {
       "subtractPairToFloat(addFloat(DoubleFloat3(rootHigh, rootLow), offset), DoubleFloat3(cameraHigh, cameraLow))",
       12,
       kOneVector,
-      each([root](const FinePoint& point) { return offsetFrom(root, point); }),
+      eachVertex([root](const FinePoint& point, const Sample&) { return offsetFrom(root, point); }),
       [root](const gl::Program& program, const Sample& sample) {
         setPair(program, "root", {root, glm::dvec3(0.0)});
         setPair(program, "camera", sample.camera);
@@ -71,7 +55,7 @@ ShaderScheme nearRoot(const UnitPoint& root) {
           "rootMinusCamera + offset",
           12,
           kOneVector,
-          each([root](const FinePoint& point) { return offsetFrom(root, point); }),
+          eachVertex([root](const FinePoint& point, const Sample&) { return offsetFrom(root, point); }),
           [root](const gl::Program& program, const Sample& sample) {
             setUniform(program.uniform("rootMinusCamera"),
                        cameraRelative(doublesOf({root, glm::dvec3(0.0)}), doublesOf(sample.camera)));
@@ -97,7 +81,7 @@ ShaderScheme oneTile(const UnitPoint& root, double extentMeters) {
           "relativeByHalves(tile, offset, cameraTile, cameraOffset, " + sizeText + ")",
           12,
           kOneVector,
-          each([middle](const FinePoint& point) { return offsetFrom(middle, point); }),
+          eachVertex([middle](const FinePoint& point, const Sample&) { return offsetFrom(middle, point); }),
           [tile, size](const gl::Program& program, const Sample& sample) {
             const TiledPosition camera = tiledFromDouble(doublesOf(sample.camera), static_cast<float>(size));
             setUniform(program.uniform("tile"), tile);
@@ -115,7 +99,7 @@ ShaderScheme fullPairs() {
           "subtractPairToFloat(DoubleFloat3(high, low), DoubleFloat3(cameraHigh, cameraLow))",
           24,
           {{0, 3, Component::F32, Conversion::Float, 0}, {1, 3, Component::F32, Conversion::Float, 12}},
-          each([](const FinePoint& point) { return pairsOf(point); }),
+          eachVertex([](const FinePoint& point, const Sample&) { return pairsOf(point); }),
           [](const gl::Program& program, const Sample& sample) { setPair(program, "camera", sample.camera); }};
 }
 
@@ -131,7 +115,7 @@ ShaderScheme latticeSteps(const UnitPoint& root, double extentMeters) {
           "relativeOnLattice(originMinusCamera, steps, cameraRest, stepMeters)",
           12,
           {{0, 3, Component::I32, Conversion::Integer, 0}},
-          each([root, unitsPerStep](const FinePoint& point) {
+          eachVertex([root, unitsPerStep](const FinePoint& point, const Sample&) {
             glm::ivec3 steps(0);
             for (std::size_t a = 0; a < 3; ++a)
               steps[static_cast<int>(a)] = static_cast<std::int32_t>(

@@ -17,24 +17,7 @@ constexpr gl::VertexAttribute integers(unsigned location, int components, Compon
   return {location, components, type, Conversion::Integer, offset};
 }
 
-/// Vertices encoded one by one.
-template <class Encode>
-std::function<std::vector<std::byte>(const Sample&)> each(Encode encode) {
-  return [encode](const Sample& sample) {
-    std::vector<decltype(encode(FinePoint{}, sample))> values;
-    for (const UnitPoint& vertex : sample.vertices) values.push_back(encode({vertex, glm::dvec3(0.0)}, sample));
-    const auto bytes = gl::bytesOf(values);
-    return std::vector<std::byte>(bytes.begin(), bytes.end());
-  };
-}
-
-void setPair(const gl::Program& program, const char* high, const char* low, const DoubleFloat3& value) {
-  setUniform(program.uniform(high), value.hi);
-  setUniform(program.uniform(low), value.lo);
-}
-void setCameraPair(const gl::Program& program, const Sample& sample) {
-  setPair(program, "cameraHigh", "cameraLow", pairsOf(sample.camera));
-}
+void setCameraPair(const gl::Program& program, const Sample& sample) { setPair(program, "camera", sample.camera); }
 
 constexpr const char* kPairInputs =
     "#include \"double_float.glsl\"\n"
@@ -49,7 +32,7 @@ ShaderScheme pairScheme(std::string_view name, std::string expression) {
           std::move(expression),
           24,
           {floats(0, 0), floats(1, 12)},
-          each([](const FinePoint& vertex, const Sample&) { return pairsOf(vertex); }),
+          eachVertex([](const FinePoint& vertex, const Sample&) { return pairsOf(vertex); }),
           setCameraPair};
 }
 
@@ -63,7 +46,7 @@ ShaderScheme tileScheme(std::string_view name, std::string function) {
           function + "(tile, offset, cameraTile, cameraOffset, 2048.0)",
           24,
           {integers(0, 3, Component::I32, 0), floats(1, 12)},
-          each([](const FinePoint& vertex, const Sample&) { return tiledOf(vertex); }),
+          eachVertex([](const FinePoint& vertex, const Sample&) { return tiledOf(vertex); }),
           [](const gl::Program& program, const Sample& sample) {
             const TiledPosition camera = tiledOf(sample.camera);
             setUniform(program.uniform("cameraTile"), camera.tile);
@@ -110,7 +93,7 @@ ShaderScheme latticePairScheme() {
           [](const gl::Program& program, const Sample& sample) {
             UnitPoint origin = latticeOf(sample).origin;
             for (Units& coordinate : origin) coordinate *= kLatticeUnits;
-            setPair(program, "originHigh", "originLow", pairsOf({origin, glm::dvec3(0.0)}));
+            setPair(program, "origin", {origin, glm::dvec3(0.0)});
             setCameraPair(program, sample);
             setUniform(program.uniform("stepMeters"), static_cast<float>(kLatticeMeters));
           }};
@@ -130,7 +113,7 @@ ShaderScheme doubleScheme() {
           "vec3(dvec3(packDouble2x32(x), packDouble2x32(y), packDouble2x32(z)) - camera())",
           24,
           {integers(0, 2, Component::I32, 0), integers(1, 2, Component::I32, 8), integers(2, 2, Component::I32, 16)},
-          each([](const FinePoint& vertex, const Sample&) { return doublesOf(vertex); }),
+          eachVertex([](const FinePoint& vertex, const Sample&) { return doublesOf(vertex); }),
           [](const gl::Program& program, const Sample& sample) {
             const glm::dvec3 camera = doublesOf(sample.camera);
             glm::ivec3 first, second;
@@ -152,7 +135,7 @@ ShaderScheme floatScheme(std::string_view name, int uploaded, std::string expres
           std::move(expression),
           12,
           {floats(0, 0)},
-          each([relative](const FinePoint& vertex, const Sample& sample) {
+          eachVertex([relative](const FinePoint& vertex, const Sample& sample) {
             return relative ? cameraRelative(doublesOf(vertex), doublesOf(sample.camera)) : floatsOf(vertex);
           }),
           [](const gl::Program& program, const Sample& sample) {
@@ -161,6 +144,12 @@ ShaderScheme floatScheme(std::string_view name, int uploaded, std::string expres
 }
 
 }  // namespace
+
+void setPair(const gl::Program& program, const std::string& name, const FinePoint& point) {
+  const DoubleFloat3 pair = pairsOf(point);
+  setUniform(program.uniform((name + "High").c_str()), pair.hi);
+  setUniform(program.uniform((name + "Low").c_str()), pair.lo);
+}
 
 const std::vector<ShaderScheme>& shaderSchemes() {
   static const std::vector<ShaderScheme> all{
@@ -176,9 +165,11 @@ const std::vector<ShaderScheme>& shaderSchemes() {
        "subtractWordsToFloat(DoubleFloat3(high, low), DoubleFloat3(cameraHigh, cameraLow))",
        24,
        {floats(0, 0), floats(1, 12)},
-       each([](const FinePoint& vertex, const Sample&) { return splitOf(vertex); }),
+       eachVertex([](const FinePoint& vertex, const Sample&) { return splitOf(vertex); }),
        [](const gl::Program& program, const Sample& sample) {
-         setPair(program, "cameraHigh", "cameraLow", splitOf(sample.camera));
+         const DoubleFloat3 split = splitOf(sample.camera);
+         setUniform(program.uniform("cameraHigh"), split.hi);
+         setUniform(program.uniform("cameraLow"), split.lo);
        }},
       pairScheme(kWords, "subtractWordsToFloat(DoubleFloat3(high, low), DoubleFloat3(cameraHigh, cameraLow))"),
       pairScheme(kDemoted, "subtractPairToFloat(DoubleFloat3(high, low), DoubleFloat3(cameraHigh, cameraLow))"),
@@ -210,6 +201,13 @@ Result<std::vector<Prepared>> prepareAll(const std::vector<ShaderScheme>& scheme
     all.push_back({&scheme, std::move(*run)});
   }
   return all;
+}
+
+void load(Prepared& prepared, const Sample& sample) {
+  const ShaderScheme& scheme = *prepared.scheme;
+  prepared.run.setVertices(scheme.vertices(sample), scheme.stride, scheme.attributes);
+  prepared.run.program().use();
+  scheme.setUniforms(prepared.run.program(), sample);
 }
 
 std::vector<double> nanosecondsPerVertex(std::vector<Prepared>& all, const Sample& sample, int rounds) {

@@ -1,6 +1,7 @@
 #include "tests/accuracy/placement/sample.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace terrane::accuracy {
@@ -35,6 +36,57 @@ Sample makeSample(double metersFromOrigin, std::uint64_t seed, std::size_t verti
     }
     sample.vertices.push_back(vertex);
   }
+  return sample;
+}
+
+namespace {
+
+/// By so much, on every axis; vertices stay on their lattice.
+void moveTo(Sample& sample, const UnitPoint& place) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Units by = (place[a] - sample.camera.units[a]) / kLatticeUnits * kLatticeUnits;
+    sample.camera.units[a] += by;
+    for (UnitPoint& vertex : sample.vertices) vertex[a] += by;
+  }
+}
+
+/// The nearest place where (units - first) is a multiple of period.
+Units nearestBorder(Units units, Units first, Units period) {
+  const Units ratio = (units - first) / period;
+  return first + ratio * period;
+}
+
+}  // namespace
+
+void moveBetweenFloats(Sample& sample) {
+  UnitPoint border = sample.camera.units;
+  for (Units& coordinate : border) {
+    const auto here = static_cast<float>(coordinate);
+    const auto next = std::nextafter(here, std::numeric_limits<float>::infinity());
+    if (std::fabs(here) < 0x1p25f) continue;  // floats are as fine as units
+    coordinate = static_cast<Units>(here) + (static_cast<Units>(next) - static_cast<Units>(here)) / 2;
+  }
+  moveTo(sample, border);
+}
+
+Sample makeSampleOf(double metersFromOrigin, std::uint64_t seed, int camera, std::size_t vertices) {
+  Sample sample = makeSample(metersFromOrigin, seed * 1009 + static_cast<std::uint64_t>(camera), vertices);
+  constexpr Units kSplit = Units{1} << 36, kTile = Units{1} << 31;
+  UnitPoint border = sample.camera.units;
+  switch (camera % 12) {
+    case 3:
+      for (Units& coordinate : border) coordinate = nearestBorder(coordinate, 0, kSplit);
+      break;
+    case 7:
+      for (Units& coordinate : border) coordinate = nearestBorder(coordinate, kTile / 2, kTile);
+      break;
+    case 11:
+      moveBetweenFloats(sample);
+      return sample;
+    default:
+      return sample;
+  }
+  moveTo(sample, border);
   return sample;
 }
 

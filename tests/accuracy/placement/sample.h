@@ -38,6 +38,13 @@ double pixelsOf(double meters);
 /// A camera that far from the origin in a direction of its own, vertices around it.
 Sample makeSample(double metersFromOrigin, std::uint64_t seed, std::size_t vertices);
 
+/// Cameras for the worst of a place: what a camera's own rounding does depends on where exactly it stands. One in four
+/// has moved to where a scheme is at its worst: the border of a tile, of a multiple of 65536 m, or between two floats.
+inline constexpr int kCameras = 128;
+Sample makeSampleOf(double metersFromOrigin, std::uint64_t seed, int camera, std::size_t vertices);
+/// Moves a sample, camera and vertices, along all axes to where floats that far out have their next border.
+void moveBetweenFloats(Sample& sample);
+
 struct Place {
   const char* name;
   double meters;

@@ -102,13 +102,28 @@ OnLattice latticeOf(const Sample& sample) {
   return lattice;
 }
 
+double worstMetersAt(const Scheme& scheme, double metersFromOrigin, std::uint64_t seed) {
+  double worst = 0;
+  for (int camera = 0; camera < kCameras; ++camera) {
+    const Sample sample = makeSampleOf(metersFromOrigin, seed, camera, 64);
+    const Placed placed = scheme.onCpu(sample);
+    for (std::size_t i = 0; i < sample.vertices.size(); ++i)
+      worst = std::max(worst, errorMeters(placed.at(i), sample.vertices[i], sample.camera));
+  }
+  return worst;
+}
+
 const std::vector<Scheme>& schemes() {
   static const std::vector<Scheme> all{
       {kFloat32, 12, 0,
        [](const Sample& s) {
          return placedAlike(s, floatsOf, [](const glm::vec3& v, const glm::vec3& c) { return v - c; });
        }},
-      {kCameraRelative, 24, 12, [](const Sample& s) { return placedAlike(s, doublesOf, cameraRelative); }},
+      {kCameraRelative, 24, 12,
+       [](const Sample& s) {
+         return placedAlike(s, doublesOf,
+                            [](const glm::dvec3& v, const glm::dvec3& c) { return cameraRelative(v, c); });
+       }},
       {kTiles, 24, 0, inTiles<relativeByTilesAndOffsets>},
       {kTilesByHalves, 24, 0, inTiles<relativeByHalves>},
       {kSplit, 24, 0,

@@ -28,6 +28,9 @@ struct Scheme {
 
 const std::vector<Scheme>& schemes();
 
+/// The worst misplacement by any of the place's cameras.
+double worstMetersAt(const Scheme& scheme, double metersFromOrigin, std::uint64_t seed);
+
 /// Names that experiments look for.
 inline constexpr std::string_view kFloat32 = "float32", kCameraRelative = "camera-relative, by the CPU",
                                   kTiles = "tiles of 2048 m + offset", kTilesByHalves = "the same, by halves",

@@ -1,5 +1,6 @@
 #include "tests/accuracy/tile_build/tile_reference.h"
 
+#include <cfloat>
 #include <cmath>
 
 #include "common/tiling/cube_sphere.h"
@@ -11,6 +12,8 @@ namespace terrane::lunar {
 #include "server/fields/lunar_noise.inl"
 }  // namespace terrane::lunar
 #pragma GCC diagnostic pop
+
+static_assert(LDBL_MANT_DIG >= 64, "the reference needs more digits than double's");
 
 namespace terrane::accuracy {
 namespace {
