@@ -83,8 +83,8 @@ Result<void> run(const Settings& settings, const std::string& directory, const s
       bar.at(0);
       try {
         report = experiment.run(settings, bar);
-      } catch (const std::exception& failure) {
-        return makeError(ErrorKind::Internal, std::string(experiment.name), failure.what());
+      } catch (const std::exception& thrown) {
+        return makeError(ErrorKind::Internal, std::string(experiment.name), thrown.what());
       }
     }
     finished.push_back({experiment, std::move(report)});
