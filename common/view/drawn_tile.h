@@ -1,0 +1,31 @@
+#pragma once
+// A tile as it is to be drawn: between its own surface and its parent's. 0 is the tile's own, 1 the parent's; what is
+// in between moves every vertex of the grid on a straight line towards the point of the parent's mesh that it lies on
+// when fully morphed. Interior, edges and corners have values of their own, so that two tiles agree on what they share.
+// Plain values.
+
+#include <array>
+#include <cstdint>
+
+#include "common/tiling/face_path.h"
+
+namespace terrane {
+
+struct TileMorph {
+  float own = 0;                          ///< of all vertices that are on no edge
+  std::array<float, kSideCount> sides{};  ///< by Side: edges without their ends, and corners
+  /// Bit e is set where the tile beyond edge e is coarser: its morph is 1, and the odd vertices of that edge are not
+  /// drawn.
+  std::uint8_t coarserEdges = 0;
+
+  bool operator==(const TileMorph&) const = default;
+};
+
+struct DrawnTile {
+  FacePath path;
+  TileMorph morph;
+
+  bool operator==(const DrawnTile&) const = default;
+};
+
+}  // namespace terrane
