@@ -37,11 +37,12 @@ Result<Cost> measure(ViewSession& session, EffectKind kind) {
   if (!with) return with.error();
   auto without = TileRenderer::create(others);
   if (!without) return without.error();
-  for (const FacePath& path : session.drawn())
-    if (const TilePtr tile = session.keptTile(path)) {
-      (*with)->upload(tile);
-      (*without)->upload(tile);
-    }
+  for (const DrawnTile& drawn : session.drawn())
+    for (int level = std::max(0, drawn.path.level() - 1); level <= drawn.path.level(); ++level)  // with its parent
+      if (const TilePtr tile = session.keptTile(drawn.path.ancestor(level))) {
+        (*with)->upload(tile);
+        (*without)->upload(tile);
+      }
   std::array<FrameTimes, 2> times;
   for (int frame = -1; frame < kMeasuredFrames; ++frame)
     for (const std::size_t side : {0u, 1u}) {

@@ -29,6 +29,8 @@ using Done = Result<bool>;
 
 // How long the loop may sleep when nothing moves: arrivals and events wake it, so this only bounds how late a message
 // is.
+/// After a pause a change of level would otherwise be over before it was seen.
+constexpr double kLongestMorphStepSeconds = 0.1;
 constexpr double kSleepSettledSeconds = 5, kSleepLoadingSeconds = 0.25;
 constexpr double kNoticeSeconds = 4;
 constexpr int kPlacementCount = static_cast<int>(Placement::Float32) + 1;
@@ -142,6 +144,7 @@ ViewSession::View InteractiveRun::viewNow(double seconds) {
   ViewSession::View view;
   view.widthPixels = std::max(width, 16);
   view.heightPixels = std::max(height, 16);
+  view.seconds = std::min(seconds, kLongestMorphStepSeconds);
   const ControlInput input = input_.take(slept_ ? std::min(seconds, 1.0 / 60) : seconds);
   const bool hands =
       input.primaryButton || input.secondaryButton || input.wheelSteps != 0 || input.move != glm::dvec3(0.0);

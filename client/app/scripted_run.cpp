@@ -110,8 +110,10 @@ Result<FlightPlan> ScriptedRun::plan() {
 // Waits until the view is there: wholly (nothing more is to come), or only complete.
 Done ScriptedRun::settle(const ViewSession::View& view, bool wholly) {
   const auto begin = Clock::now();
+  ViewSession::View waiting = view;
+  waiting.seconds = 1e9;  // nobody sees it come: changes of level take no time
   for (;;) {
-    const UpdateReport report = session_->update(view, kUnlimitedUpload);
+    const UpdateReport report = session_->update(waiting, kUnlimitedUpload);
     if (report.settled || (!wholly && report.complete)) return true;
     const double seconds = millisecondsSince(begin) / 1000;
     if (report.stuck || seconds > options_.timeLimitSeconds)
@@ -189,7 +191,7 @@ Done ScriptedRun::flyPlan(const FlightPlan& plan) {
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
     const PlannedFrame& frame = plan.frames[i];
     const auto [width, height] = pictureSize();
-    const ViewSession::View view{frame.pose, plan.aboveGround, width, height};
+    const ViewSession::View view{frame.pose, plan.aboveGround, width, height, options_.stepSeconds};
     // A flight begins with a full view, so that what it shows does not depend on how fast the first tiles came.
     if (options_.settle || (i == 0 && plan.points > 0))
       if (const Done settled = settle(view, options_.settle); !settled) return settled.error();
@@ -230,7 +232,7 @@ Done ScriptedRun::run() {
   if (!planned) return planned.error();
   if (options_.explain) {
     const PlannedFrame& first = planned->frames.front();
-    const ViewSession::View view{first.pose, planned->aboveGround, options_.widthPixels, options_.heightPixels};
+    const ViewSession::View view{first.pose, planned->aboveGround, options_.widthPixels, options_.heightPixels, 0};
     if (const Done settled = settle(view, true); !settled) return settled.error();
     fmt::print("{}", explainEffects(*session_));
     return true;

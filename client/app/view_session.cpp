@@ -17,6 +17,7 @@
 #include "common/command_line.h"
 #include "common/tiling/cube_sphere.h"
 #include "common/view/level_of_detail.h"
+#include "common/view/level_transitions.h"
 
 namespace terrane {
 namespace {
@@ -55,7 +56,8 @@ struct ViewSession::State {
   Camera camera;
   ViewPose pose;
   TileSelection selection;
-  std::vector<FacePath> drawn;
+  LevelTransitions transitions;
+  std::vector<DrawnTile> drawn;
   std::size_t missing = 0, wantedCount = 0;
   bool firstUpdate = true, wasSettled = false;
   std::unordered_map<FacePath, TilePtr> kept;  ///< only to explain: otherwise a mesh is dropped once it is on the GPU
@@ -68,6 +70,7 @@ struct ViewSession::State {
   ViewPose resolved(const View& view) const;
   std::vector<WantedTile> groundChain(double allowedPixels) const;
   bool requestTiles(double allowedPixels, bool groundFirst);
+  bool advanceLevels(double seconds);
 };
 
 ViewSession::ViewSession(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -204,6 +207,16 @@ bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst) {
   return groundKnown;
 }
 
+// From what selection wants drawn to what is drawn; true if that is another picture.
+bool ViewSession::State::advanceLevels(double seconds) {
+  std::vector<DrawnTile> next = transitions.advance(selection.draw, seconds, [this](const FacePath& path) {
+    return path.level() > 0 && stream->resident(path) != nullptr && stream->resident(path.parent()) != nullptr;
+  });
+  const bool changed = next != drawn;
+  drawn = std::move(next);
+  return changed || !transitions.settled();
+}
+
 UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   State& s = *state_;
   s.nameUnknownEffects();
@@ -226,25 +239,27 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
     settings.errorPixels = errorPixels;
     s.selection = selectTiles(
         camera, body().selection, [&s](const FacePath& path) { return s.stream->known(path); }, settings);
-    report.changed = moved || s.selection.draw != s.drawn;
-    s.drawn = s.selection.draw;
+    report.changed = s.advanceLevels(view.seconds) || moved;
     const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround);
     report.complete = s.selection.complete && (groundKnown || !view.aboveGround);
     const bool still = !view.aboveGround || pose.altitudeMeters == altitudeBefore;
     const bool idle = s.stream->idle();
-    report.settled = s.selection.complete && groundKnown && still && !arrived && s.missing == 0 && idle;
+    report.settled =
+        s.selection.complete && s.transitions.settled() && groundKnown && still && !arrived && s.missing == 0 && idle;
     if (report.settled && !std::exchange(s.wasSettled, true)) returnFreedMemory();
     s.wasSettled = report.settled;
     report.stuck = !arrived && s.missing > 0 && idle && s.stream->status().failed > 0;
   }
-  for (const FacePath& path : s.stream->evict(s.drawn)) s.renderer->remove(path);
+  std::vector<FacePath> drawn;
+  for (const DrawnTile& tile : s.drawn) drawn.push_back(tile.path);
+  for (const FacePath& path : s.stream->evict(drawn)) s.renderer->remove(path);
   return report;
 }
 
 DrawStats ViewSession::draw() { return state_->renderer->draw(state_->camera, state_->drawn, drawSettings); }
 
 CoverageCount ViewSession::coverage() {
-  return state_->renderer->countCoverage(state_->camera, state_->drawn, drawSettings.placement,
+  return state_->renderer->countCoverage(state_->camera, state_->drawn, drawSettings,
                                          body().selection.occluderRadiusMeters);
 }
 
@@ -269,7 +284,8 @@ double ViewSession::progress() const noexcept {
 }
 
 std::size_t ViewSession::missing() const noexcept { return state_->missing; }
-const std::vector<FacePath>& ViewSession::drawn() const noexcept { return state_->drawn; }
+const std::vector<DrawnTile>& ViewSession::drawn() const noexcept { return state_->drawn; }
+
 StreamStatus ViewSession::streamStatus() const { return state_->stream->status(); }
 const SelfTestReport& ViewSession::selfTest() const { return state_->renderer->selfTest(); }
 std::size_t ViewSession::gpuBytes() const { return state_->renderer ? state_->renderer->gpuBytes() : 0; }

@@ -12,6 +12,7 @@
 #include "client/render/tile_renderer.h"
 #include "client/tiles/tile_stream.h"
 #include "common/result.h"
+#include "common/view/drawn_tile.h"
 #include "common/view/tile_selection.h"
 
 namespace terrane {
@@ -50,6 +51,7 @@ class ViewSession {
     ViewPose pose;
     bool aboveGround = false;
     int widthPixels = 0, heightPixels = 0;
+    double seconds = 0;  ///< since the update before: changes of level morph over time
   };
   UpdateReport update(const View& view, const UploadBudget& budget);
 
@@ -67,7 +69,7 @@ class ViewSession {
   /// Share of the wanted tiles that are there, 0..1, and how many are not.
   double progress() const noexcept;
   std::size_t missing() const noexcept;
-  const std::vector<FacePath>& drawn() const noexcept;
+  const std::vector<DrawnTile>& drawn() const noexcept;
   StreamStatus streamStatus() const;
   const SelfTestReport& selfTest() const;
   std::size_t gpuBytes() const;

@@ -49,6 +49,9 @@ Capabilities detectCapabilities(bool forceBaseline) {
   found.clipControl = found.version >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
   found.preciseByExtension = found.version < 40 && epoxy_has_gl_extension("GL_ARB_gpu_shader5");
   found.precise = found.version >= 40 || found.preciseByExtension;
+  GLint words = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &words);
+  found.bufferWords = std::max(found.bufferWords, static_cast<std::size_t>(std::max(words, 0)));
   return found;
 }
 

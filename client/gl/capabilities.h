@@ -1,6 +1,7 @@
 #pragma once
 // What the current GL context offers of the few things that Terrane asks for beyond 3.3 core. GL thread only.
 
+#include <cstddef>
 #include <string>
 
 namespace terrane::gl {
@@ -11,7 +12,8 @@ struct Capabilities {
   bool clipControl = false;   ///< depth 0..1, for reversed depth without loss
   bool precise = false;  ///< the shading language has the qualifier that forbids rewriting floating-point expressions
   bool preciseByExtension = false;
-  bool rendersOnCpu = false;  ///< software GL: what it holds back of a frame is the program's own memory
+  std::size_t bufferWords = 65536;  ///< that a shader can read of a buffer
+  bool rendersOnCpu = false;        ///< software GL: what it holds back of a frame is the program's own memory
   std::string renderer, versionText;
 };
 

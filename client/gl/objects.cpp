@@ -67,6 +67,9 @@ void deleteObject(ObjectKind kind, unsigned id) noexcept {
     case ObjectKind::Shader:
       glDeleteShader(id);
       break;
+    case ObjectKind::Texture:
+      glDeleteTextures(1, &id);
+      break;
   }
 }
 
@@ -97,6 +100,19 @@ void Buffer::read(std::size_t offset, std::span<std::byte> out) const {
 void Buffer::bind(BufferTarget target) const { glBindBuffer(glTarget(target), handle_.id()); }
 
 void Buffer::bindForFeedback() const { glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, handle_.id()); }
+
+BufferWords::BufferWords(const Buffer& buffer) {
+  GLuint id = 0;
+  glGenTextures(1, &id);
+  handle_ = Handle<ObjectKind::Texture>(id);
+  bind();
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffer.handle_.id());
+}
+
+void BufferWords::bind() const {
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_BUFFER, handle_.id());
+}
 
 VertexArray::VertexArray() {
   GLuint id = 0;

@@ -10,7 +10,7 @@
 
 namespace terrane::gl {
 
-enum class ObjectKind : std::uint8_t { Buffer, VertexArray, Framebuffer, Renderbuffer, Program, Shader };
+enum class ObjectKind : std::uint8_t { Buffer, VertexArray, Framebuffer, Renderbuffer, Program, Shader, Texture };
 
 void deleteObject(ObjectKind kind, unsigned id) noexcept;
 
@@ -56,8 +56,21 @@ class Buffer {
   std::size_t bytes() const noexcept { return bytes_; }
 
  private:
+  friend class BufferWords;
   Handle<ObjectKind::Buffer> handle_;
   std::size_t bytes_ = 0;
+};
+
+/// A buffer as shaders read it by index: 32-bit words, unsigned. Sees whatever the buffer then holds; the buffer must
+/// outlive it.
+class BufferWords {
+ public:
+  explicit BufferWords(const Buffer& buffer);
+  /// As the one texture that programs sample.
+  void bind() const;
+
+ private:
+  Handle<ObjectKind::Texture> handle_;
 };
 
 enum class Component : std::uint8_t { U8, U16, I16, I32, F32 };

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,5 +54,6 @@ void setUniform(Uniform uniform, const glm::vec3& value);
 void setUniform(Uniform uniform, const glm::vec4& value);
 void setUniform(Uniform uniform, const glm::ivec3& value);
 void setUniform(Uniform uniform, const glm::mat3& value);
+void setUniform(Uniform uniform, std::span<const float> values);  ///< an array
 
 }  // namespace terrane::gl

@@ -21,10 +21,6 @@ std::array<std::uint8_t, 256> makeDisplayBytes() {
   return bytes;
 }
 
-/// Cells on a side of the blocks in which triangles are drawn: 14 x 14 vertices then fit the 256 entries of the vertex
-/// cache of software GL (and any GPU's), so that few vertices are shaded twice. In Draco's order of decoding many are.
-constexpr int kBlockCells = 13;
-
 constexpr unsigned kPositionLocation = 0, kNormalLocation = 1, kColorLocation = 2, kRelativeLocation = 3;
 using gl::Component, gl::Conversion;
 constexpr std::array kAttributes{
@@ -40,13 +36,15 @@ int surfaceVertexCount(const TileMetadata& metadata) {
   return (metadata.cellsPerEdge + 1) * (metadata.cellsPerEdge + 1);
 }
 
-std::vector<GpuVertex> packVertices(const Tile& tile) {
+/// order: MeshLayout's.
+std::vector<GpuVertex> packVertices(const Tile& tile, const std::vector<std::uint32_t>& order) {
   const TileMesh& mesh = tile.mesh;
   const int surface = surfaceVertexCount(tile.metadata);
   static const std::array<std::uint8_t, 256> displayBytes = makeDisplayBytes();
   std::vector<GpuVertex> vertices(mesh.vertexCount());
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    GpuVertex& vertex = vertices[i];
+  for (std::size_t place = 0; place < vertices.size(); ++place) {
+    GpuVertex& vertex = vertices[place];
+    const std::size_t i = order.empty() ? place : order[place];
     for (std::size_t c = 0; c < 3; ++c) {
       vertex.offset[c] = mesh.offsets[3 * i + c];
       const float normal = std::clamp(mesh.normals[3 * i + c], -1.0f, 1.0f);
@@ -58,93 +56,65 @@ std::vector<GpuVertex> packVertices(const Tile& tile) {
   return vertices;
 }
 
-struct OrderedTriangles {
-  std::vector<std::uint32_t> indices;
-  std::size_t surfaceIndices = 0;
-};
-
-/// Surface triangles block by block, then the skirts in the order they came.
-OrderedTriangles orderTriangles(const Tile& tile) {
-  const TileMesh& mesh = tile.mesh;
-  const int row = tile.metadata.cellsPerEdge + 1, surface = surfaceVertexCount(tile.metadata);
-  const int blocksPerRow = tile.metadata.cellsPerEdge / kBlockCells + 1;
-  struct Keyed {
-    int key;  ///< block, or one past all blocks for a skirt
-    std::size_t triangle;
-  };
-  std::vector<Keyed> order(mesh.triangles.size() / 3);
-  OrderedTriangles result;
-  for (std::size_t t = 0; t < order.size(); ++t) {
-    int column = row, line = row;  // the triangle's cell: its lowest corner
-    bool skirt = false;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const int grid = mesh.gridIndices[mesh.triangles[3 * t + c]];
-      skirt |= grid >= surface;
-      column = std::min(column, grid % row);
-      line = std::min(line, grid / row);
-    }
-    const int block = line / kBlockCells * blocksPerRow + column / kBlockCells;
-    order[t] = {skirt ? blocksPerRow * blocksPerRow : block, t};
-    if (!skirt) result.surfaceIndices += 3;
-  }
-  std::ranges::stable_sort(order, {}, &Keyed::key);
-  result.indices.reserve(mesh.triangles.size());
-  for (const Keyed& keyed : order)
-    for (std::size_t c = 0; c < 3; ++c) result.indices.push_back(mesh.triangles[3 * keyed.triangle + c]);
-  return result;
-}
-
 }  // namespace
 
-void GpuTile::placeOnCpu(const glm::dvec3& cameraBody, std::vector<float>& scratch) {
-  if (!relativeArray) {
+const std::vector<std::uint16_t>& GpuTile::heldOffsets() {
+  if (offsets_.empty()) {
     std::vector<GpuVertex> held(vertexCount);
     vertices.read(0, std::as_writable_bytes(std::span(held)));
-    offsets.resize(3 * vertexCount);
+    offsets_.resize(3 * vertexCount);
     for (std::size_t i = 0; i < vertexCount; ++i)
-      std::ranges::copy(held[i].offset, offsets.begin() + static_cast<std::ptrdiff_t>(3 * i));
-    relativePositions = std::make_unique<gl::Buffer>();
-    relativeArray = std::make_unique<gl::VertexArray>();
-    relativeArray->attach(vertices, sizeof(GpuVertex), std::span(kAttributes).subspan(1));
-    relativeArray->attach(*relativePositions, 3 * sizeof(float), kRelativeAttributes);
-    relativeArray->attachIndices(indices->buffer);
+      std::ranges::copy(held[i].offset, offsets_.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
-  const double step = stepMeters(metadata.stepExponent);
-  const LatticePoint& origin = metadata.origin;
-  scratch.resize(offsets.size());
-  for (std::size_t i = 0; i < scratch.size(); i += 3) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::size_t at = i + static_cast<std::size_t>(axis);
-      const auto steps = static_cast<double>(origin[axis] + offsets[at]);
-      scratch[at] = static_cast<float>(steps * step - cameraBody[axis]);
-    }
-  }
-  relativeArray->bind();
-  relativePositions->upload(gl::BufferTarget::Vertices, gl::bytesOf(scratch), gl::BufferUse::Stream);
+  return offsets_;
 }
 
-std::shared_ptr<const SharedIndices> GpuTiles::indicesFor(const Tile& tile, std::size_t& bytesTaken) {
+const gl::BufferWords& GpuTile::words() {
+  if (!words_) words_ = std::make_unique<gl::BufferWords>(vertices);
+  return *words_;
+}
+
+void GpuTile::streamRelative(std::span<const float> positions) {
+  if (!relativeArray_) {
+    relativePositions_ = std::make_unique<gl::Buffer>();
+    relativeArray_ = std::make_unique<gl::VertexArray>();
+    relativeArray_->attach(vertices, sizeof(GpuVertex), std::span(kAttributes).subspan(1));
+    relativeArray_->attach(*relativePositions_, 3 * sizeof(float), kRelativeAttributes);
+  }
+  relativeArray_->bind();
+  relativePositions_->upload(gl::BufferTarget::Vertices, std::as_bytes(positions), gl::BufferUse::Stream);
+}
+
+std::size_t GpuTile::bytes() const noexcept {
+  return vertices.bytes() + (relativePositions_ ? relativePositions_->bytes() : 0);
+}
+
+std::shared_ptr<TileIndices> GpuTiles::gridIndices(int cells, std::size_t& bytesTaken) {
+  std::weak_ptr<TileIndices>& slot = grids_[cells];
+  if (auto held = slot.lock()) return held;
+  auto made = std::make_shared<TileIndices>(cells);
+  bytesTaken += made->bytes();
+  slot = made;
+  return made;
+}
+
+std::shared_ptr<const MeshLayout> GpuTiles::layoutFor(const Tile& tile, std::size_t& bytesTaken) {
   const TileMesh& mesh = tile.mesh;
-  // The order depends on the grid indices too, so both make the fingerprint.
+  const int cells = tile.metadata.cellsPerEdge;
   const XXH128_hash_t grid = XXH3_128bits(mesh.gridIndices.data(), mesh.gridIndices.size() * sizeof(std::uint16_t));
   const XXH128_hash_t hash = XXH3_128bits_withSeed(mesh.triangles.data(), mesh.triangles.size() * sizeof(std::uint32_t),
-                                                   grid.low64 ^ static_cast<std::uint64_t>(tile.metadata.cellsPerEdge));
-  std::weak_ptr<const SharedIndices>& slot = shared_[{hash.low64 ^ grid.high64, hash.high64}];
+                                                   grid.low64 ^ static_cast<std::uint64_t>(cells));
+  std::weak_ptr<const MeshLayout>& slot = layouts_[{hash.low64 ^ grid.high64, hash.high64}];
   if (auto held = slot.lock()) return held;
 
-  const OrderedTriangles ordered = orderTriangles(tile);
-  auto made = std::make_shared<SharedIndices>();
-  made->surfaceIndices = ordered.surfaceIndices;
-  made->skirtIndices = ordered.indices.size() - ordered.surfaceIndices;
-  made->wide = mesh.vertexCount() > 65536;
-  gl::VertexArray::unbind();
-  if (made->wide) {
-    made->buffer.upload(gl::BufferTarget::Indices, gl::bytesOf(ordered.indices), gl::BufferUse::Static);
+  auto made = std::make_shared<MeshLayout>();
+  if (auto order = verticesInGridOrder(mesh, cells)) {
+    made->order = std::move(*order);
+    made->indices = gridIndices(cells, bytesTaken);
   } else {
-    const std::vector<std::uint16_t> narrow(ordered.indices.begin(), ordered.indices.end());
-    made->buffer.upload(gl::BufferTarget::Indices, gl::bytesOf(narrow), gl::BufferUse::Static);
+    made->indices = std::make_shared<TileIndices>(tile);
+    bytesTaken += made->indices->bytes();
   }
-  bytesTaken += made->buffer.bytes();
   slot = made;
   return made;
 }
@@ -155,29 +125,27 @@ std::size_t GpuTiles::upload(const Tile& tile) {
   std::size_t bytesTaken = 0;
   uploaded->metadata = tile.metadata;
   uploaded->vertexCount = tile.mesh.vertexCount();
-  uploaded->indices = indicesFor(tile, bytesTaken);
-  uploaded->vertices.upload(gl::BufferTarget::Vertices, gl::bytesOf(packVertices(tile)), gl::BufferUse::Static);
+  uploaded->layout = layoutFor(tile, bytesTaken);
+  uploaded->vertices.upload(gl::BufferTarget::Vertices, gl::bytesOf(packVertices(tile, uploaded->layout->order)),
+                            gl::BufferUse::Static);
   uploaded->array.attach(uploaded->vertices, sizeof(GpuVertex), kAttributes);
-  uploaded->array.attachIndices(uploaded->indices->buffer);
   gl::VertexArray::unbind();
-  vertexBytes_ += uploaded->vertices.bytes();
   bytesTaken += uploaded->vertices.bytes();
   tiles_[tile.metadata.path] = std::move(uploaded);
   return bytesTaken;
 }
 
 void GpuTiles::remove(const FacePath& path) {
-  const auto found = tiles_.find(path);
-  if (found == tiles_.end()) return;
-  vertexBytes_ -= found->second->vertices.bytes();
-  tiles_.erase(found);
-  std::erase_if(shared_, [](const auto& entry) { return entry.second.expired(); });
+  if (tiles_.erase(path) == 0) return;
+  const auto expired = [](const auto& entry) { return entry.second.expired(); };
+  std::erase_if(layouts_, expired);
+  std::erase_if(grids_, expired);
 }
 
 void GpuTiles::clear() {
   tiles_.clear();
-  shared_.clear();
-  vertexBytes_ = 0;
+  layouts_.clear();
+  grids_.clear();
 }
 
 GpuTile* GpuTiles::find(const FacePath& path) {
@@ -186,11 +154,12 @@ GpuTile* GpuTiles::find(const FacePath& path) {
 }
 
 std::size_t GpuTiles::bytes() const noexcept {
-  std::size_t sum = vertexBytes_;
-  for (const auto& [path, tile] : tiles_)
-    if (tile->relativePositions) sum += tile->relativePositions->bytes();
-  for (const auto& [fingerprint, indices] : shared_)
-    if (const auto held = indices.lock()) sum += held->buffer.bytes();
+  std::size_t sum = 0;
+  for (const auto& [path, tile] : tiles_) sum += tile->bytes();
+  for (const auto& [cells, indices] : grids_)
+    if (const auto held = indices.lock()) sum += held->bytes();
+  for (const auto& [fingerprint, layout] : layouts_)
+    if (const auto held = layout.lock(); held && !held->indices->isGrid()) sum += held->indices->bytes();
   return sum;
 }
 

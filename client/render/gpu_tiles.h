@@ -1,6 +1,7 @@
 #pragma once
 // The tiles on the GPU: one interleaved vertex buffer a tile, and index buffers that tiles of equal connectivity share.
-// GL thread only.
+// A complete grid's vertices lie in grid order, whatever order they came in: then all such tiles share their indices,
+// and a vertex' number tells where in the grid it is. GL thread only.
 //
 // Nothing of a tile stays in main memory but its metadata; a placement that needs the offsets on the CPU reads them
 // back once.
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "client/gl/objects.h"
+#include "client/render/tile_indices.h"
 #include "proto/tile_mesh.h"
 
 namespace terrane {
@@ -30,12 +32,10 @@ struct GpuVertex {
 };
 static_assert(sizeof(GpuVertex) == 20);
 
-/// Indices of one connectivity: triangles of the surface first, in an order that suits a vertex cache, then those of
-/// the skirts.
-struct SharedIndices {
-  gl::Buffer buffer;
-  std::size_t surfaceIndices = 0, skirtIndices = 0;
-  bool wide = false;  ///< 32-bit indices
+/// How meshes of one connectivity are laid out and drawn.
+struct MeshLayout {
+  std::vector<std::uint32_t> order;  ///< the mesh's vertex at each place; empty: as they came
+  std::shared_ptr<TileIndices> indices;
 };
 
 struct GpuTile {
@@ -43,16 +43,21 @@ struct GpuTile {
   std::size_t vertexCount = 0;
   gl::Buffer vertices;
   gl::VertexArray array;
-  std::shared_ptr<const SharedIndices> indices;
+  std::shared_ptr<const MeshLayout> layout;
 
-  /// Only once placed on the CPU: the offsets read back (3 a vertex), and an array whose positions come from a streamed
-  /// buffer.
-  std::vector<std::uint16_t> offsets;
-  std::unique_ptr<gl::Buffer> relativePositions;
-  std::unique_ptr<gl::VertexArray> relativeArray;
+  /// The offsets, 3 a vertex; read back once.
+  const std::vector<std::uint16_t>& heldOffsets();
+  /// The vertices as a tile that morphs towards this one reads them.
+  const gl::BufferWords& words();
+  /// Uploads positions relative to the camera, 3 a vertex, and binds an array that uses them in place of the offsets.
+  void streamRelative(std::span<const float> positions);
+  std::size_t bytes() const noexcept;
 
-  /// Uploads relative positions for this camera and binds the array that uses them. cameraBody: metres.
-  void placeOnCpu(const glm::dvec3& cameraBody, std::vector<float>& scratch);
+ private:
+  std::vector<std::uint16_t> offsets_;
+  std::unique_ptr<gl::BufferWords> words_;
+  std::unique_ptr<gl::Buffer> relativePositions_;
+  std::unique_ptr<gl::VertexArray> relativeArray_;
 };
 
 class GpuTiles {
@@ -65,7 +70,8 @@ class GpuTiles {
   std::size_t bytes() const noexcept;
 
  private:
-  std::shared_ptr<const SharedIndices> indicesFor(const Tile& tile, std::size_t& bytesTaken);
+  std::shared_ptr<const MeshLayout> layoutFor(const Tile& tile, std::size_t& bytesTaken);
+  std::shared_ptr<TileIndices> gridIndices(int cells, std::size_t& bytesTaken);
 
   struct Fingerprint {
     std::uint64_t low = 0, high = 0;
@@ -75,8 +81,8 @@ class GpuTiles {
     std::size_t operator()(const Fingerprint& f) const noexcept { return static_cast<std::size_t>(f.low); }
   };
   std::unordered_map<FacePath, std::unique_ptr<GpuTile>> tiles_;
-  std::unordered_map<Fingerprint, std::weak_ptr<const SharedIndices>, FingerprintHash> shared_;
-  std::size_t vertexBytes_ = 0;
+  std::unordered_map<Fingerprint, std::weak_ptr<const MeshLayout>, FingerprintHash> layouts_;
+  std::unordered_map<int, std::weak_ptr<TileIndices>> grids_;  ///< by cells of an edge
 };
 
 }  // namespace terrane

@@ -42,11 +42,12 @@ glm::mat3 clipRows(const Camera& camera) {
 
 }  // namespace
 
-Result<TileProgram> TileProgram::build(Placement placement, TilePurpose purpose, const EffectList& effects,
+Result<TileProgram> TileProgram::build(const TileVariant& variant, const EffectList& effects,
                                        const gl::Capabilities& capabilities) {
   gl::ProgramSpec spec;
-  spec.defines.emplace_back(placementDefine(placement));
-  switch (purpose) {
+  spec.defines.emplace_back(placementDefine(variant.placement));
+  if (variant.morphs) spec.defines.emplace_back("MORPH");
+  switch (variant.purpose) {
     case TilePurpose::Shaded:
       spec.vertexFile = "tile.vert.glsl";
       spec.fragmentFile = "tile.frag.glsl";
@@ -64,11 +65,11 @@ Result<TileProgram> TileProgram::build(Placement placement, TilePurpose purpose,
   }
   auto program = gl::Program::build(spec, capabilities);
   if (!program) return program.error();
-  return TileProgram(std::move(*program), placement, purpose);
+  return TileProgram(std::move(*program), variant);
 }
 
-TileProgram::TileProgram(gl::Program program, Placement placement, TilePurpose purpose)
-    : program_(std::move(program)), placement_(placement), purpose_(purpose) {
+TileProgram::TileProgram(gl::Program program, const TileVariant& variant)
+    : program_(std::move(program)), variant_(variant) {
   clipRows_ = program_.uniform("clipRows");
   nearMeters_ = program_.uniform("nearMeters");
   exposure_ = program_.uniform("exposure");
@@ -81,6 +82,13 @@ TileProgram::TileProgram(gl::Program program, Placement placement, TilePurpose p
   originLow_ = program_.uniform("originLow");
   cameraHigh_ = program_.uniform("cameraHigh");
   cameraLow_ = program_.uniform("cameraLow");
+  morphGrid_ = program_.uniform("morphGrid");
+  morphByPlace_ = program_.uniform("morphByPlace");
+  parentMinusOwn_ = program_.uniform("parentMinusOwn");
+  cameraOdd_ = program_.uniform("cameraOdd");
+  parentCameraRest_ = program_.uniform("parentCameraRest");
+  parentOriginHigh_ = program_.uniform("parentOriginHigh");
+  parentOriginLow_ = program_.uniform("parentOriginLow");
 }
 
 void TileProgram::begin(const Camera& camera, const EffectList& effects) {
@@ -92,35 +100,55 @@ void TileProgram::begin(const Camera& camera, const EffectList& effects) {
   const DoubleFloat3 position = fromDouble(camera.positionBody);
   setUniform(cameraHigh_, position.hi);
   setUniform(cameraLow_, position.lo);
-  if (purpose_ == TilePurpose::Shaded) {
+  if (variant_.purpose == TilePurpose::Shaded) {
     setUniform(exposure_, std::pow(kExposure * kColorScale, static_cast<float>(1 / kDisplayGamma)));
     setTint(glm::vec3(1.0f));
     for (const auto& effect : effects) effect->setUniforms(program_);
   }
 }
 
-bool TileProgram::place(GpuTile& tile, std::vector<float>& scratch) {
-  if (placement_ == Placement::Cpu) {
-    tile.placeOnCpu(cameraBody_, scratch);
+/// The camera on the lattice of this step and, for tiles that morph, on their parents'.
+void TileProgram::placeCamera(int stepExponent) {
+  if (stepExponent_ == stepExponent) return;
+  stepExponent_ = stepExponent;
+  camera_ = cameraOnLattice(cameraBody_, stepMeters(stepExponent));
+  setUniform(stepMeters_, static_cast<float>(stepMeters(stepExponent)));
+  setUniform(cameraRest_, camera_.rest);
+  if (!variant_.morphs) return;
+  const CameraOnLattice onParents = cameraOnLattice(cameraBody_, stepMeters(stepExponent + 1));
+  setUniform(cameraOdd_, cameraOdd(camera_, onParents));
+  setUniform(parentCameraRest_, onParents.rest);
+}
+
+void TileProgram::setMorph(const TileDraw& draw) const {
+  setUniform(morphGrid_, glm::ivec3{draw.grid.side, draw.grid.firstColumn, draw.grid.firstRow});
+  setUniform(morphByPlace_, draw.byPlace);
+  setUniform(parentMinusOwn_, draw.grid.parentMinusOwn);
+  const TileMetadata& parent = draw.parent->metadata;
+  const DoubleFloat3 origin = fromDouble(latticePosition(parent.origin, parent.stepExponent));
+  setUniform(parentOriginHigh_, origin.hi);
+  setUniform(parentOriginLow_, origin.lo);
+  draw.parent->words().bind();
+}
+
+bool TileProgram::place(const TileDraw& draw, std::vector<float>& scratch) {
+  if (variant_.morphs) setMorph(draw);
+  if (variant_.placement == Placement::Cpu) {
+    placeOnCpu(draw, cameraBody_, scratch);
     return true;
   }
-  const int stepExponent = tile.metadata.stepExponent;
-  if (stepExponent_ != stepExponent) {
-    stepExponent_ = stepExponent;
-    camera_ = cameraOnLattice(cameraBody_, stepMeters(stepExponent));
-    setUniform(stepMeters_, static_cast<float>(stepMeters(stepExponent)));
-    setUniform(cameraRest_, camera_.rest);
-  }
-  if (placement_ == Placement::Integer) {
-    const auto difference = originMinusCamera(tile.metadata.origin, camera_.steps);
+  const TileMetadata& tile = draw.tile->metadata;
+  placeCamera(tile.stepExponent);
+  if (variant_.placement == Placement::Integer) {
+    const auto difference = originMinusCamera(tile.origin, camera_.steps);
     if (!difference) return false;
     setUniform(originMinusCamera_, *difference);
   } else {
-    const DoubleFloat3 origin = fromDouble(latticePosition(tile.metadata.origin, stepExponent));
+    const DoubleFloat3 origin = fromDouble(latticePosition(tile.origin, tile.stepExponent));
     setUniform(originHigh_, origin.hi);
     setUniform(originLow_, origin.lo);
   }
-  tile.array.bind();
+  draw.tile->array.bind();
   return true;
 }
 

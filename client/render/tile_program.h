@@ -1,5 +1,5 @@
 #pragma once
-// One variant of the tile shader: a placement and a purpose, with its uniforms. GL thread only.
+// One variant of the tile shader: a placement, a purpose, and whether tiles morph, with its uniforms. GL thread only.
 
 #include <memory>
 #include <optional>
@@ -8,8 +8,8 @@
 
 #include "client/gl/shader_program.h"
 #include "client/render/effect_factories.h"
-#include "client/render/gpu_tiles.h"
 #include "client/render/placement.h"
+#include "client/render/tile_draw.h"
 #include "client/render/tile_renderer.h"
 #include "common/numerics/relative_position.h"
 
@@ -25,27 +25,38 @@ inline constexpr int kPlacementCount = 4;
 
 using EffectList = std::vector<std::unique_ptr<const Effect>>;
 
+struct TileVariant {
+  Placement placement = Placement::Integer;
+  TilePurpose purpose = TilePurpose::Shaded;
+  bool morphs = false;  ///< reads the parent too; tiles that are drawn as they are need not pay for it
+};
+
 class TileProgram {
  public:
   /// Errors: Unsupported ("shader").
-  static Result<TileProgram> build(Placement placement, TilePurpose purpose, const EffectList& effects,
+  static Result<TileProgram> build(const TileVariant& variant, const EffectList& effects,
                                    const gl::Capabilities& capabilities);
 
   /// Makes it current for this camera.
   void begin(const Camera& camera, const EffectList& effects);
+  /// Makes it current again in the same pass.
+  void resume() const { program_.use(); }
   /// Sets a tile's uniforms and binds its array. False if this placement cannot reach the tile (Integer, absurdly far).
-  bool place(GpuTile& tile, std::vector<float>& scratch);
+  bool place(const TileDraw& draw, std::vector<float>& scratch);
   void setTint(const glm::vec3& displayColor) const;
   void setMark(float value) const;
 
  private:
-  TileProgram(gl::Program program, Placement placement, TilePurpose purpose);
+  TileProgram(gl::Program program, const TileVariant& variant);
+  void placeCamera(int stepExponent);
+  void setMorph(const TileDraw& draw) const;
 
   gl::Program program_;
-  Placement placement_;
-  TilePurpose purpose_;
+  TileVariant variant_;
   gl::Uniform clipRows_, nearMeters_, exposure_, tint_, mark_;
   gl::Uniform stepMeters_, originMinusCamera_, cameraRest_, originHigh_, originLow_, cameraHigh_, cameraLow_;
+  gl::Uniform morphGrid_, morphByPlace_, parentMinusOwn_, cameraOdd_, parentCameraRest_, parentOriginHigh_,
+      parentOriginLow_;
 
   glm::dvec3 cameraBody_{0.0};
   std::optional<int> stepExponent_;  ///< whose camera values are set

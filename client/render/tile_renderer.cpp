@@ -70,12 +70,20 @@ class TilePass {
   bool clipControl_;
 };
 
-std::size_t drawIndices(const SharedIndices& indices, std::size_t first, std::size_t count) {
-  if (count == 0) return 0;
-  const std::size_t width = indices.wide ? sizeof(std::uint32_t) : sizeof(std::uint16_t);
-  const auto* offset = reinterpret_cast<const void*>(first * width);  // NOLINT(performance-no-int-to-ptr): as GL has it
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), indices.wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT, offset);
-  return count / 3;
+/// Of the array that is bound. Returns the number of triangles.
+std::size_t drawList(const IndexList& list) {
+  if (list.count == 0) return 0;
+  list.buffer.bind(gl::BufferTarget::Indices);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(list.count), list.wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT,
+                 nullptr);
+  return list.count / 3;
+}
+
+std::vector<DrawnTile> asTheyAre(std::span<const FacePath> paths) {
+  std::vector<DrawnTile> tiles;
+  tiles.reserve(paths.size());
+  for (const FacePath& path : paths) tiles.push_back({path, {}});
+  return tiles;
 }
 
 }  // namespace
@@ -85,15 +93,17 @@ struct TileRenderer::State {
   SelfTestReport selfTest;
   EffectList effects;
   GpuTiles tiles;
-  std::array<std::array<std::optional<TileProgram>, kTilePurposeCount>, kPlacementCount> programs;
+  std::array<std::optional<TileProgram>, std::size_t{2} * kTilePurposeCount * kPlacementCount> programs;
   std::optional<RenderTarget> windowTarget, coverageTarget;
   std::vector<float> scratch;
 
   /// Compiled when first asked for. Errors: Unsupported ("shader").
-  Result<TileProgram*> program(Placement placement, TilePurpose purpose) {
-    auto& slot = programs[static_cast<std::size_t>(placement)][static_cast<std::size_t>(purpose)];
+  Result<TileProgram*> program(const TileVariant& variant) {
+    const auto placement = static_cast<std::size_t>(variant.placement);
+    const auto purpose = static_cast<std::size_t>(variant.purpose);
+    auto& slot = programs[(placement * kTilePurposeCount + purpose) * 2 + (variant.morphs ? 1 : 0)];
     if (!slot) {
-      auto built = TileProgram::build(placement, purpose, effects, capabilities);
+      auto built = TileProgram::build(variant, effects, capabilities);
       if (!built) return built.error();
       slot.emplace(std::move(*built));
     }
@@ -102,9 +112,10 @@ struct TileRenderer::State {
 
   /// As program; a driver that compiled the self-test but not this is reported once and asked for the Cpu placement
   /// instead.
-  TileProgram* programOrFallback(Placement placement, TilePurpose purpose) {
-    for (const Placement candidate : {placement, Placement::Cpu}) {
-      auto found = program(candidate, purpose);
+  TileProgram* programOrFallback(TileVariant variant) {
+    for (const Placement candidate : {variant.placement, Placement::Cpu}) {
+      variant.placement = candidate;
+      auto found = program(variant);
       if (found) return *found;
       if (!reported) fmt::print(stderr, "placement {}: {}\n", placementName(candidate), found.error().text());
       reported = true;
@@ -114,57 +125,67 @@ struct TileRenderer::State {
   bool reported = false;
 
   /// Uploaded tiles of the list, nearest first: what is in front is drawn first and hides the rest before it is shaded.
-  std::vector<GpuTile*> nearestFirst(const Camera& camera, std::span<const FacePath> paths) {
+  std::vector<TileDraw> nearestFirst(const Camera& camera, std::span<const DrawnTile> list, bool skirts) {
     struct Entry {
       double distance;
-      GpuTile* tile;
+      TileDraw draw;
     };
     std::vector<Entry> entries;
-    entries.reserve(paths.size());
-    for (const FacePath& path : paths) {
-      if (GpuTile* tile = tiles.find(path)) {
-        const Sphere& sphere = tile->metadata.sphere;
-        entries.push_back({glm::length(sphere.center - camera.positionBody) - sphere.radiusMeters, tile});
+    entries.reserve(list.size());
+    for (const DrawnTile& drawn : list) {
+      if (const auto draw = makeTileDraw(tiles, drawn, skirts, capabilities.bufferWords)) {
+        const Sphere& sphere = draw->tile->metadata.sphere;
+        entries.push_back({glm::length(sphere.center - camera.positionBody) - sphere.radiusMeters, *draw});
       }
     }
     std::ranges::stable_sort(entries, {}, &Entry::distance);
-    std::vector<GpuTile*> ordered;
+    std::vector<TileDraw> ordered;
     ordered.reserve(entries.size());
-    for (const Entry& entry : entries) ordered.push_back(entry.tile);
+    for (const Entry& entry : entries) ordered.push_back(entry.draw);
     return ordered;
   }
 
-  /// Calls drawTile(program, tile) with everything set, tile by tile.
+  /// Calls drawTile(program, draw) with everything set, tile by tile.
   template <class DrawTile>
-  void forEachTile(const Camera& camera, std::span<GpuTile* const> list, Placement placement, TilePurpose purpose,
+  void forEachTile(const Camera& camera, std::span<const TileDraw> list, Placement placement, TilePurpose purpose,
                    const DrawTile& drawTile) {
-    TileProgram* program = programOrFallback(placement, purpose);
-    if (program == nullptr) return;
-    program->begin(camera, effects);
-    std::vector<GpuTile*> unreachable;
+    std::array<TileProgram*, 2> begun{};  // for tiles as they are, for those that morph
+    const TileProgram* current = nullptr;
+    std::vector<TileDraw> unreachable;
     int drawn = 0;
-    for (GpuTile* tile : list) {
-      if (program->place(*tile, scratch)) {
-        drawTile(*program, *tile);
+    for (const TileDraw& draw : list) {
+      const bool morphs = draw.parent != nullptr;
+      TileProgram*& program = begun[morphs ? 1 : 0];
+      if (program == nullptr) {
+        program = programOrFallback({placement, purpose, morphs});
+        if (program == nullptr) return;
+        program->begin(camera, effects);
+      } else if (program != current) {
+        program->resume();
+      }
+      current = program;
+      if (program->place(draw, scratch)) {
+        drawTile(*program, draw);
         if (capabilities.rendersOnCpu && ++drawn % kTilesPerFlush == 0) glFlush();
       } else {
-        unreachable.push_back(tile);
+        unreachable.push_back(draw);
       }
     }
     if (!unreachable.empty()) forEachTile(camera, unreachable, Placement::Cpu, purpose, drawTile);
   }
 
-  DrawStats drawTiles(const Camera& camera, std::span<const FacePath> paths, const DrawSettings& settings,
+  DrawStats drawTiles(const Camera& camera, std::span<const DrawnTile> list, const DrawSettings& settings,
                       Placement placement) {
     DrawStats stats;
     const TilePass pass(capabilities, settings.wireframe);
-    forEachTile(camera, nearestFirst(camera, paths), placement, TilePurpose::Shaded,
-                [&](const TileProgram& program, const GpuTile& tile) {
-                  if (settings.levelColors) program.setTint(levelTint(tile.metadata.path.level()));
-                  const SharedIndices& indices = *tile.indices;
-                  stats.triangles += drawIndices(indices, 0, indices.surfaceIndices + indices.skirtIndices);
+    forEachTile(camera, nearestFirst(camera, list, settings.skirts), placement, TilePurpose::Shaded,
+                [&](const TileProgram& program, const TileDraw& draw) {
+                  if (settings.levelColors) program.setTint(levelTint(draw.tile->metadata.path.level()));
+                  TileIndices& indices = *draw.tile->layout->indices;
+                  stats.triangles += drawList(indices.surface(draw.coarserEdges));
+                  if (draw.skirts) stats.triangles += drawList(indices.skirts());
+                  stats.drawCalls += draw.skirts ? 2 : 1;
                   ++stats.tiles;
-                  ++stats.drawCalls;
                 });
     return stats;
   }
@@ -178,7 +199,8 @@ Result<std::unique_ptr<TileRenderer>> TileRenderer::create(const std::vector<Eff
   if (!report) return report.error();
   state->selfTest = *report;
   state->effects = makeEffects(effects);
-  if (auto program = state->program(state->selfTest.chosen, TilePurpose::Shaded); !program) return program.error();
+  if (auto program = state->program({state->selfTest.chosen, TilePurpose::Shaded, false}); !program)
+    return program.error();
   return std::unique_ptr<TileRenderer>(new TileRenderer(std::move(state)));
 }
 
@@ -199,6 +221,10 @@ void TileRenderer::clear() { state_->tiles.clear(); }
 std::size_t TileRenderer::gpuBytes() const noexcept { return state_->tiles.bytes(); }
 
 DrawStats TileRenderer::draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings) {
+  return draw(camera, asTheyAre(tiles), settings);
+}
+
+DrawStats TileRenderer::draw(const Camera& camera, std::span<const DrawnTile> tiles, const DrawSettings& settings) {
   const Placement placement = usable(settings.placement);
   GLint framebuffer = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
@@ -219,8 +245,13 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const FacePath> til
   return stats;
 }
 
-CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const FacePath> tiles, Placement placement,
-                                          double lowestRadiusMeters) {
+CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const FacePath> tiles,
+                                          const DrawSettings& settings, double lowestRadiusMeters) {
+  return countCoverage(camera, asTheyAre(tiles), settings, lowestRadiusMeters);
+}
+
+CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const DrawnTile> tiles,
+                                          const DrawSettings& settings, double lowestRadiusMeters) {
   GLint framebuffer = 0;
   std::array<GLint, 4> viewport{};
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
@@ -235,13 +266,14 @@ CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const 
   target->bind();
   {
     const TilePass pass(state_->capabilities, false);
-    state_->forEachTile(camera, state_->nearestFirst(camera, tiles), usable(placement), TilePurpose::Coverage,
-                        [](const TileProgram& program, const GpuTile& tile) {
-                          const SharedIndices& indices = *tile.indices;
+    state_->forEachTile(camera, state_->nearestFirst(camera, tiles, settings.skirts), usable(settings.placement),
+                        TilePurpose::Coverage, [](const TileProgram& program, const TileDraw& draw) {
+                          TileIndices& indices = *draw.tile->layout->indices;
                           program.setMark(1.0f);
-                          drawIndices(indices, 0, indices.surfaceIndices);
+                          drawList(indices.surface(draw.coarserEdges));
+                          if (!draw.skirts) return;
                           program.setMark(0.5f);
-                          drawIndices(indices, indices.surfaceIndices, indices.skirtIndices);
+                          drawList(indices.skirts());
                         });
   }
   const std::vector<std::uint8_t> pixels = target->readRed();
@@ -250,18 +282,18 @@ CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const 
   return countCoveragePixels(camera, pixels, lowestRadiusMeters);
 }
 
-std::vector<float> TileRenderer::clipPositions(const Camera& camera, const FacePath& path, Placement placement) {
-  GpuTile* tile = state_->tiles.find(path);
-  if (tile == nullptr) return {};
-  std::vector<float> positions(4 * tile->vertexCount);
+std::vector<float> TileRenderer::clipPositions(const Camera& camera, const DrawnTile& tile, Placement placement) {
+  const auto draw = makeTileDraw(state_->tiles, tile, false, state_->capabilities.bufferWords);
+  if (!draw) return {};
+  std::vector<float> positions(4 * draw->tile->vertexCount);
   gl::Buffer captured;
   captured.allocate(gl::BufferTarget::Feedback, positions.size() * sizeof(float), gl::BufferUse::ReadBack);
   captured.bindForFeedback();
   glEnable(GL_RASTERIZER_DISCARD);
-  state_->forEachTile(camera, std::array{tile}, usable(placement), TilePurpose::Feedback,
-                      [](const TileProgram&, const GpuTile& placed) {
+  state_->forEachTile(camera, std::array{*draw}, usable(placement), TilePurpose::Feedback,
+                      [](const TileProgram&, const TileDraw& placed) {
                         glBeginTransformFeedback(GL_POINTS);
-                        glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(placed.vertexCount));
+                        glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(placed.tile->vertexCount));
                         glEndTransformFeedback();
                       });
   glDisable(GL_RASTERIZER_DISCARD);

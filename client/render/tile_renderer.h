@@ -12,7 +12,7 @@
 #include "common/result.h"
 #include "common/scene/effects.h"
 #include "common/view/camera.h"
-#include "common/view/tile_selection.h"
+#include "common/view/drawn_tile.h"
 #include "proto/tile_mesh.h"
 
 namespace terrane {
@@ -32,6 +32,9 @@ struct DrawSettings {
   Placement placement = Placement::Integer;
   bool wireframe = false;
   bool levelColors = false;
+  /// Draw every tile's skirts. Not needed where edges towards coarser tiles are morphed and stitched to them; a tile
+  /// that cannot be (DrawnTile) is drawn with its skirts anyway.
+  bool skirts = false;
 };
 
 struct RendererOptions {
@@ -64,18 +67,23 @@ class TileRenderer {
   void remove(const FacePath& path);
   void clear();
 
-  /// Draws into the current framebuffer (colour and depth cleared here). Tiles that were never uploaded are skipped.
-  /// The window's own framebuffer lacks the depth precision: with that bound, draws into a RenderTarget of the camera's
-  /// size and copies it over (the camera then has the window's size).
+  /// Draws into the current framebuffer (colour and depth cleared here). Tiles that were never uploaded are skipped;
+  /// one that morphs needs its parent uploaded, or it is drawn as it is. The window's own framebuffer lacks the depth
+  /// precision: with that bound, draws into a RenderTarget of the camera's size and copies it over (the camera then has
+  /// the window's size).
+  DrawStats draw(const Camera& camera, std::span<const DrawnTile> tiles, const DrawSettings& settings);
+  /// The tiles as they are.
   DrawStats draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings);
 
   /// A pass of tiles only into an own target, read back: no sky, no multisampling, no effects.
-  CoverageCount countCoverage(const Camera& camera, std::span<const FacePath> tiles, Placement placement,
+  CoverageCount countCoverage(const Camera& camera, std::span<const DrawnTile> tiles, const DrawSettings& settings,
+                              double lowestRadiusMeters);
+  CoverageCount countCoverage(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings,
                               double lowestRadiusMeters);
 
-  /// Clip-space positions (x, y, z, w) of a tile's vertices as the vertex shader computes them, by transform feedback;
-  /// for the tests of placement against a reference of higher precision.
-  std::vector<float> clipPositions(const Camera& camera, const FacePath& tile, Placement placement);
+  /// Clip-space positions (x, y, z, w) of a tile's vertices as the vertex shader computes them, by transform feedback,
+  /// a complete grid's in grid order; for the tests of placement against a reference of higher precision.
+  std::vector<float> clipPositions(const Camera& camera, const DrawnTile& tile, Placement placement);
 
   std::size_t gpuBytes() const noexcept;
 

@@ -4,4 +4,10 @@
 
 invariant gl_Position;
 
-void main() { gl_Position = clipPosition(relativePosition()); }
+void main() {
+#ifdef MORPH
+  gl_Position = clipPosition(morphedPosition(morphedVertex()));
+#else
+  gl_Position = clipPosition(relativePosition());
+#endif
+}

@@ -18,10 +18,26 @@ out vec3 color;  // as the display wants it, in full light
 invariant gl_Position;
 
 void main() {
+#ifdef MORPH
+  MorphedVertex vertex = morphedVertex();
+  vec3 relative = morphedPosition(vertex);
+#else
   vec3 relative = relativePosition();
-  gl_Position = clipPosition(relative);
-#ifdef EFFECT_SUN
-  signedLight = signedSunlight(vertexNormal.xyz, -normalize(relative));
 #endif
-  color = vertexColor.rgb * exposure * tint;
+  gl_Position = clipPosition(relative);
+  vec3 ownColor = vertexColor.rgb;
+#ifdef EFFECT_SUN
+  vec3 towardsEye = -normalize(relative);
+  signedLight = signedSunlight(vertexNormal.xyz, towardsEye);
+#endif
+#ifdef MORPH
+  // As the parent looks there: between its vertices it interpolates light and colour, not normals.
+  ownColor = mix(ownColor, 0.5 * (parentColor(vertex.first) + parentColor(vertex.second)), vertex.morph);
+#ifdef EFFECT_SUN
+  float parentLight =
+      0.5 * (signedSunlight(parentNormal(vertex.first), towardsEye) + signedSunlight(parentNormal(vertex.second), towardsEye));
+  signedLight = mix(signedLight, parentLight, vertex.morph);
+#endif
+#endif
+  color = ownColor * exposure * tint;
 }

@@ -10,6 +10,21 @@ FUNCTION vec3 relativeOnLattice(ivec3 originMinusCamera, ivec3 offsetSteps, vec3
   return meters;
 }
 
+// The same between a tile's own surface and its parent's, whose step is twice as long: the vertex in steps from the camera, the way in steps to
+// the point of the parent's mesh that it moves to (a sum of two of the parent's vertices, so exact), and the share of it, 0..1. At 0 it gives
+// relativeOnLattice's bits. At 1 on a vertex of the parent's it gives those of the parent's own: with the camera on the parent's lattice,
+// which is cameraOdd steps below the camera on the tile's, 0 or 1 an axis, and with what that rounding took away in steps of the parent.
+FUNCTION vec3 relativeMorphed(ivec3 steps, ivec3 toParent, float morph, bool onParentsVertex, vec3 cameraRest, float stepMeters, ivec3 cameraOdd,
+                              vec3 parentCameraRest) {
+  if (morph == 1.0f && onParentsVertex)
+    return relativeOnLattice((steps + toParent + cameraOdd) >> 1, ivec3(0), parentCameraRest, 2.0f * stepMeters);
+  PRECISE vec3 own = vec3(steps) - cameraRest;
+  PRECISE vec3 way = vec3(toParent) * morph;
+  PRECISE vec3 fromCamera = own + way;
+  PRECISE vec3 meters = fromCamera * stepMeters;
+  return meters;
+}
+
 // A tile's index and an offset in it, tiles and offsets each by themselves, as Unreal's large world coordinates do.
 FUNCTION vec3 relativeByTilesAndOffsets(ivec3 tile, vec3 offsetMeters, ivec3 cameraTile, vec3 cameraOffsetMeters, float tileMeters) {
   PRECISE vec3 tiles = vec3(tile - cameraTile) * tileMeters;

@@ -6,6 +6,8 @@
 //   scheme             a vertex is                    error of a component of the result, u = 2^-24
 //   lattice integers   steps from its tile's origin   2.5 u of itself, +- u step: exact but for the camera's rest, and
 //                                                     rounded in the subtraction; beyond 2^24 steps the conversion too
+//   morphed integers   steps, and a share of those   3.5 u of itself and of the way to the parent's mesh, +- u step
+//                      to the parent's mesh
 //   camera-relative    float(position - camera), by   u of itself, +- 2^-53 of the distance from the origin; costs the
 //                      the CPU, every frame           CPU and the bus 12 bytes a vertex and frame
 //   double-float       two floats (double_float3.h)   u of itself, +- 2 u^2 of the distance from the origin
@@ -38,6 +40,7 @@ using glm::vec3;
 
 using relative_position_bare::relativeByHalves;
 using relative_position_bare::relativeByTilesAndOffsets;
+using relative_position_bare::relativeMorphed;
 using relative_position_bare::relativeOnLattice;
 
 /// The subtraction in double, rounded once.
@@ -53,6 +56,11 @@ struct CameraOnLattice {
 };
 /// stepMeters: a power of two. Beyond +-2^62 steps, or where it is NaN: clamped, or 0.
 CameraOnLattice cameraOnLattice(const glm::dvec3& cameraBody, double stepMeters) noexcept;
+
+/// How many steps a camera on a lattice lies above the same camera on a lattice of twice the step: 0 or 1 an axis.
+inline glm::ivec3 cameraOdd(const CameraOnLattice& camera, const CameraOnLattice& onParents) noexcept {
+  return glm::ivec3(camera.steps - onParents.steps * std::int64_t{2});
+}
 
 /// origin - camera in steps as the shader's 32-bit integers; empty when a component is beyond +-kMaxPlacedSteps. A
 /// selection made for the camera never comes near (it draws no tile from 30,000 tile widths away); a frozen selection

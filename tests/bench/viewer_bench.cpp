@@ -100,7 +100,7 @@ void measureView(const char* name, const ViewPose& pose, const TileBuilder& buil
   std::size_t triangles = 0;
   const auto viewerFrame = [&] {
     const auto chosen = selectTiles(camera, builder.info().selection, lookup, {});
-    triangles = renderer.draw(camera, chosen.draw, {}).triangles;
+    triangles = renderer.draw(camera, chosen.draw, {.skirts = true}).triangles;
   };
   const auto bareFrame = [&] { bare.draw(); };
   for (int i = 0; i < 3; ++i) {

@@ -15,6 +15,7 @@
 #include "client/render/placement.h"
 #include "common/numerics/relative_position.h"
 #include "tests/capture/gl_fixture.h"
+#include "tests/capture/stitched_tiles.h"
 
 namespace terrane {
 namespace {
@@ -40,7 +41,7 @@ class PlacementTest : public GlTest {
     auto target = RenderTarget::create(camera.widthPixels, camera.heightPixels);
     EXPECT_TRUE(target);
     target->bind();
-    const DrawStats stats = renderer.draw(camera, paths, {.placement = placement});
+    const DrawStats stats = renderer.draw(camera, paths, {.placement = placement, .skirts = true});
     EXPECT_EQ(stats.tiles, paths.size());
     Image image = readFramebuffer(camera.widthPixels, camera.heightPixels);
     RenderTarget::bindWindow();
@@ -91,7 +92,7 @@ void measure(TileRenderer& renderer, const Camera& camera, const Tile& tile, std
   const ReferenceCamera reference(camera);
   std::map<Placement, std::vector<float>> computed;
   for (const auto& [placement, errors] : placements)
-    computed[placement] = renderer.clipPositions(camera, tile.metadata.path, placement);
+    computed[placement] = renderer.clipPositions(camera, {tile.metadata.path, {}}, placement);
   for (std::size_t i = 0; i < tile.mesh.vertexCount(); i += stride) {
     const auto exact = reference.clip(tile.metadata, &tile.mesh.offsets[3 * i]);
     if (exact.w < camera.nearMeters || abs(exact.x) > exact.w || abs(exact.y) > exact.w) continue;
@@ -147,8 +148,8 @@ TEST_F(PlacementTest, AMillimetreOfCameraMovesEveryNearVertexByAMillimetre) {
   double worst = 0;
   std::size_t vertices = 0;
   for (const FacePath& path : paths) {
-    const auto a = renderer->clipPositions(before, path, Placement::Integer),
-               b = renderer->clipPositions(after, path, Placement::Integer);
+    const auto a = renderer->clipPositions(before, {path, {}}, Placement::Integer),
+               b = renderer->clipPositions(after, {path, {}}, Placement::Integer);
     for (std::size_t i = 0; i < a.size(); i += 4) {
       const double w = a[i + 3];
       if (w < 1 || w > 3 || std::abs(a[i]) > w || std::abs(a[i + 1]) > w) continue;
@@ -162,17 +163,20 @@ TEST_F(PlacementTest, AMillimetreOfCameraMovesEveryNearVertexByAMillimetre) {
   EXPECT_LE(worst, 1e-6);
 }
 
-/// Clip positions by lattice point, so that vertices shared by tiles meet.
+/// Clip positions by lattice point, so that vertices shared by tiles meet. Every vertex is so far on its way to the
+/// parent's surface.
 std::size_t countDifferingSharedVertices(TileRenderer& renderer, const Camera& camera,
                                          const std::vector<std::shared_ptr<const Tile>>& tiles, Placement placement,
-                                         std::size_t& shared) {
+                                         float morph, std::size_t& shared) {
   std::map<std::array<std::int64_t, 3>, std::array<std::uint32_t, 4>> seen;
   std::size_t differing = 0;
   shared = 0;
   for (const auto& tile : tiles) {
-    const auto positions = renderer.clipPositions(camera, tile->metadata.path, placement);
+    const auto positions = renderer.clipPositions(camera, {tile->metadata.path, morphedBy(morph)}, placement);
+    // The feet of skirts do not move, wherever their tops go.
+    const std::size_t compared = morph == 0 ? tile->mesh.vertexCount() : std::size_t{65} * 65;
     std::map<std::array<std::int64_t, 3>, std::array<std::uint32_t, 4>> own;
-    for (std::size_t i = 0; i < tile->mesh.vertexCount(); ++i) {
+    for (std::size_t i = 0; i < compared; ++i) {
       std::array<std::int64_t, 3> key{};
       std::array<std::uint32_t, 4> bits{};
       for (std::size_t c = 0; c < 3; ++c)
@@ -204,19 +208,25 @@ TEST_F(PlacementTest, VerticesSharedByTilesGetTheSameBitsOverFaceEdgesAndCorners
       tiles.push_back(moon().tile(path));
       for (const Side side : {Side::UMin, Side::VMin}) tiles.push_back(moon().tile(*path.neighbour(side)));
     }
-    for (const auto& tile : tiles) renderer->upload(tile);
+    for (const auto& tile : tiles) {
+      renderer->upload(tile);
+      renderer->upload(moon().tile(tile->metadata.path.parent()));
+    }
     const Camera camera = moon().cameraAboveGround(
         {45 * kDegree, corner, std::ldexp(1.0, 20 - level), 0.3, -50 * kDegree}, kWidth, kHeight);
-    for (const Placement placement : {Placement::Integer, Placement::DoubleFloat, Placement::Cpu, Placement::Float32}) {
-      std::size_t shared = 0;
-      const std::size_t differing = countDifferingSharedVertices(*renderer, camera, tiles, placement, shared);
-      std::printf("level %2d, %s: %zu of %zu shared vertices differ\n", level,
-                  std::string(placementName(placement)).c_str(), differing, shared);
-      EXPECT_GE(shared, 500u);
-      if (placement == Placement::Float32) {
-        float32Differing += differing;
-      } else {
-        EXPECT_EQ(differing, 0u) << placementName(placement) << " at level " << level;
+    for (const float morph : {0.0f, 0.37f, 1.0f}) {
+      for (const Placement placement :
+           {Placement::Integer, Placement::DoubleFloat, Placement::Cpu, Placement::Float32}) {
+        std::size_t shared = 0;
+        const std::size_t differing = countDifferingSharedVertices(*renderer, camera, tiles, placement, morph, shared);
+        std::printf("level %2d, morph %.2f, %s: %zu of %zu shared vertices differ\n", level, static_cast<double>(morph),
+                    std::string(placementName(placement)).c_str(), differing, shared);
+        EXPECT_GE(shared, 500u);
+        if (placement == Placement::Float32) {
+          float32Differing += differing;
+        } else {
+          EXPECT_EQ(differing, 0u) << placementName(placement) << " at level " << level << ", morph " << morph;
+        }
       }
     }
   }
@@ -268,8 +278,8 @@ TEST_F(PlacementTest, ATileTooFarForTheShadersIntegersIsPlacedOnTheCpu) {
   Camera camera = cameraFromPose({0.1, 0.1, 5e7, 0, -90 * kDegree}, 1737400, 0.9, kWidth, kHeight);
   ASSERT_FALSE(originMinusCamera(tile->metadata.origin,
                                  cameraOnLattice(camera.positionBody, stepMeters(tile->metadata.stepExponent)).steps));
-  EXPECT_EQ(renderer->clipPositions(camera, path, Placement::Integer),
-            renderer->clipPositions(camera, path, Placement::Cpu));
+  EXPECT_EQ(renderer->clipPositions(camera, {path, {}}, Placement::Integer),
+            renderer->clipPositions(camera, {path, {}}, Placement::Cpu));
 }
 
 TEST_F(PlacementTest, DrawingToTheWindowShowsWhatTheRenderTargetHolds) {
@@ -278,7 +288,7 @@ TEST_F(PlacementTest, DrawingToTheWindowShowsWhatTheRenderTargetHolds) {
   const Camera camera = cameraFromPose({0.3, 0.2, 4e6, 0, -90 * kDegree}, 1737400, 0.9, size[0], size[1]);
   const std::vector<FacePath> paths = uploadSettled(*renderer, camera);
   RenderTarget::bindWindow();
-  renderer->draw(camera, paths, {});
+  renderer->draw(camera, paths, {.skirts = true});
   const Image shown = readFramebuffer(size[0], size[1]);
   EXPECT_EQ(rmsDifference(shown, picture(*renderer, camera, paths, Placement::Integer)), 0.0);
 }

@@ -26,10 +26,14 @@ layout(location = 2) in vec3 offset;
 layout(location = 3) in vec3 cameraOffset;
 layout(location = 4) in vec3 pairHi;
 layout(location = 5) in vec3 pairLo;
-out vec3 onLattice, byTilesAndOffsets, byHalves, directionHi, directionLo, lengthBoth;
+out vec3 onLattice, morphed, onParent, byTilesAndOffsets, byHalves, directionHi, directionLo, lengthBoth;
 
 void main() {
   onLattice = relativeOnLattice(tile, cameraTile, abs(cameraOffset) / 1048576.0, STEP_METERS);
+  vec3 rest = abs(cameraOffset) / 1048576.0;
+  ivec3 odd = (tile + cameraTile) & 1;
+  morphed = relativeMorphed(tile, cameraTile, rest.x, true, rest, STEP_METERS, odd, 0.5 * (vec3(odd) + rest));
+  onParent = relativeMorphed(tile, cameraTile, 1.0, true, rest, STEP_METERS, odd, 0.5 * (vec3(odd) + rest));
   byTilesAndOffsets = relativeByTilesAndOffsets(tile, offset, cameraTile, cameraOffset, 2097152.0);
   byHalves = relativeByHalves(tile, offset, cameraTile, cameraOffset, 2097152.0);
   DoubleFloat3 v = DoubleFloat3(pairHi, pairLo);
@@ -77,11 +81,11 @@ class RelativePositionShader : public GlTest {};
 
 TEST_F(RelativePositionShader, GivesTheCpusBits) {
   constexpr float kStep = 0.0078125f;
-  auto run = test::VertexRun::create(
-      {.vertexText = kShader,
-       .defines = {"STEP_METERS 0.0078125"},
-       .varyings = {"onLattice", "byTilesAndOffsets", "byHalves", "directionHi", "directionLo", "lengthBoth"},
-       .floatsPerVertex = 18});
+  auto run = test::VertexRun::create({.vertexText = kShader,
+                                      .defines = {"STEP_METERS 0.0078125"},
+                                      .varyings = {"onLattice", "morphed", "onParent", "byTilesAndOffsets", "byHalves",
+                                                   "directionHi", "directionLo", "lengthBoth"},
+                                      .floatsPerVertex = 24});
   ASSERT_TRUE(run) << run.error().text();
   const std::vector<Vertex> vertices = makeVertices(421);
   using gl::Component, gl::Conversion;
@@ -95,29 +99,35 @@ TEST_F(RelativePositionShader, GivesTheCpusBits) {
   run->setVertices(gl::bytesOf(vertices), sizeof(Vertex), attributes);
   run->run();
   const std::vector<float> out = run->results();
-  std::size_t lattice = 0, tiles = 0, halves = 0, directions = 0, lengths = 0;
+  std::size_t lattice = 0, morphed = 0, tiles = 0, halves = 0, directions = 0, lengths = 0;
   double worstDirection = 0, worstLength = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Vertex& v = vertices[i];
-    const float* result = &out[18 * i];
-    lattice += differing(relativeOnLattice(v.tile, v.cameraTile, glm::abs(v.cameraOffset) / 1048576.0f, kStep), result);
-    tiles += differing(relativeByTilesAndOffsets(v.tile, v.offset, v.cameraTile, v.cameraOffset, 0x1p21f), result + 3);
-    halves += differing(relativeByHalves(v.tile, v.offset, v.cameraTile, v.cameraOffset, 0x1p21f), result + 6);
+    const float* result = &out[24 * i];
+    const glm::vec3 rest = glm::abs(v.cameraOffset) / 1048576.0f;
+    const glm::ivec3 odd = (v.tile + v.cameraTile) & 1;
+    const glm::vec3 parentRest = 0.5f * (glm::vec3(odd) + rest);
+    lattice += differing(relativeOnLattice(v.tile, v.cameraTile, rest, kStep), result);
+    morphed += differing(relativeMorphed(v.tile, v.cameraTile, rest.x, true, rest, kStep, odd, parentRest), result + 3);
+    morphed += differing(relativeMorphed(v.tile, v.cameraTile, 1, true, rest, kStep, odd, parentRest), result + 6);
+    tiles += differing(relativeByTilesAndOffsets(v.tile, v.offset, v.cameraTile, v.cameraOffset, 0x1p21f), result + 9);
+    halves += differing(relativeByHalves(v.tile, v.offset, v.cameraTile, v.cameraOffset, 0x1p21f), result + 12);
     const DoubleFloat3 pair{v.pairHi, v.pairLo}, direction = normalize(pair);
     const DoubleFloat norm = length(pair);
-    directions += differing(direction.hi, result + 9) + differing(direction.lo, result + 12);
-    lengths += differing({norm.hi, norm.lo, 0}, result + 15);
+    directions += differing(direction.hi, result + 15) + differing(direction.lo, result + 18);
+    lengths += differing({norm.hi, norm.lo, 0}, result + 21);
     worstLength =
         std::max(worstLength,
-                 std::fabs((static_cast<double>(result[15]) + static_cast<double>(result[16])) / toDouble(norm) - 1));
+                 std::fabs((static_cast<double>(result[21]) + static_cast<double>(result[22])) / toDouble(norm) - 1));
     for (int axis = 0; axis < 3; ++axis)
       worstDirection =
-          std::max(worstDirection, std::fabs(toDouble(direction)[axis] - static_cast<double>(result[9 + axis]) -
-                                             static_cast<double>(result[12 + axis])));
+          std::max(worstDirection, std::fabs(toDouble(direction)[axis] - static_cast<double>(result[15 + axis]) -
+                                             static_cast<double>(result[18 + axis])));
   }
   std::printf("of %zu vertices differ: directions %zu (by at most %.2g u^2), lengths %zu\n", vertices.size(),
               directions, worstDirection / kFloatUnitSquared, lengths);
   EXPECT_EQ(lattice, 0u);
+  EXPECT_EQ(morphed, 0u);
   EXPECT_EQ(tiles, 0u);
   EXPECT_EQ(halves, 0u);
   EXPECT_LE(worstLength, (kLengthBound + 5.5 + 110) * kFloatUnitSquared) << "the root's bound in a shader";

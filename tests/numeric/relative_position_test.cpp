@@ -108,6 +108,51 @@ TEST(RelativePosition, ACameraThatIsNowhereIsOnTheLatticeNevertheless) {
   EXPECT_FALSE(originMinusCamera(glm::i64vec3(0), camera.steps));
 }
 
+TEST(RelativePosition, AMorphedVertexStartsWithItsOwnBitsEndsWithItsParentsAndErrsLittleInBetween) {
+  Operands operands(366);
+  double worst = 0;
+  std::size_t parents = 0, odd = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double step = std::ldexp(1.0, static_cast<int>(operands.bits(5)) - 23);
+    const glm::dvec3 camera = somewhere(operands, step * 0x1p43);
+    const CameraOnLattice own = cameraOnLattice(camera, step), onParents = cameraOnLattice(camera, 2 * step);
+    const glm::ivec3 cameraOffBy = cameraOdd(own, onParents);
+    odd += cameraOffBy.x == 1 ? 1u : 0u;
+    for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(cameraOffBy[axis] & ~1, 0);
+    const auto away = [&] { return static_cast<std::int64_t>(operands.bits(18)) - (1 << 17); };
+    // A vertex of the parent's near the camera, and one of the child's near that.
+    const glm::i64vec3 parent = onParents.steps + glm::i64vec3(away(), away(), away());
+    const glm::ivec3 toParent(operands.bits(9) - 256, operands.bits(9) - 256, operands.bits(9) - 256);
+    const glm::i64vec3 vertex = parent * std::int64_t{2} - glm::i64vec3(toParent);
+    const glm::ivec3 steps(vertex - own.steps);
+    const auto stepFloat = static_cast<float>(step);
+    const auto at = [&](float morph, bool onVertex) {
+      return relativeMorphed(steps, toParent, morph, onVertex, own.rest, stepFloat, cameraOffBy, onParents.rest);
+    };
+    ASSERT_EQ(at(0, true), relativeOnLattice(steps, glm::ivec3(0), own.rest, stepFloat));
+    ASSERT_EQ(at(1, true),
+              relativeOnLattice(glm::ivec3(parent - onParents.steps), glm::ivec3(0), onParents.rest, 2 * stepFloat));
+    ++parents;
+    const auto morph = static_cast<float>(0.5 + 0.5 * unit(operands));
+    const glm::vec3 between = at(morph, true), end = at(1, false);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto check = [&](float placed, double share) {
+        const HighPrecision truth =
+            (HighPrecision(vertex[axis]) + HighPrecision(toParent[axis]) * share) * step - HighPrecision(camera[axis]);
+        const double size = std::fabs(static_cast<double>(truth)) + std::abs(toParent[axis]) * step;
+        const double bound = 3.5 * kFloatUnit * size + kFloatUnit * step;
+        worst = std::max(worst, std::fabs(static_cast<double>(HighPrecision(HighPrecision(placed) - truth))) / bound);
+      };
+      check(between[axis], static_cast<double>(morph));
+      check(end[axis], 1);
+    }
+  }
+  std::cout << parents << " vertices, " << odd << " cameras odd in x: share of the bound " << worst << '\n';
+  EXPECT_LE(worst, 1.0);
+  EXPECT_GT(worst, 0.2);
+  EXPECT_GT(odd, parents / 3);
+}
+
 TEST(RelativePosition, ASplitAt65536MetresLosesMillimetresWherePairsLoseNone) {
   // Cesium's encoding: multiples of 65536 m towards 0, and the rest, each as a float.
   Operands operands(363);

@@ -39,7 +39,7 @@ TileSelection MoonStage::settle(const SelectionSettings& settings) {
 
 DrawStats MoonStage::frame(const SelectionSettings& settings) {
   target_.bind();
-  const DrawStats stats = renderer_->draw(camera_, select(settings).draw, {});
+  const DrawStats stats = renderer_->draw(camera_, select(settings).draw, {.skirts = true});
   glFinish();
   return stats;
 }

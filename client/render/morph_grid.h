@@ -1,0 +1,46 @@
+#pragma once
+// Where a tile's grid lies on its parent's, in integers. The parent's step is twice the tile's, and its cells have
+// their diagonal from 00 to 11, so that every vertex of the tile lies on a vertex of the parent's mesh or in the middle
+// between two: what it moves to when fully morphed is exact. Pure functions, thread-safe; client/shaders/morph.glsl
+// does the same.
+
+#include <array>
+#include <cstdint>
+#include <glm/ext/vector_int3_sized.hpp>
+#include <optional>
+
+#include "common/tiling/lattice.h"
+#include "common/view/drawn_tile.h"
+#include "proto/tile_mesh.h"
+
+namespace terrane {
+
+/// Grid indices in the parent's mesh; equal where the vertex lies on one of the parent's.
+struct ParentVertices {
+  int first = 0, second = 0;
+};
+
+struct MorphGrid {
+  int side = 0;                       ///< vertices in a row, of both
+  int firstColumn = 0, firstRow = 0;  ///< of the parent's grid, where the tile's vertex (0, 0) lies
+  glm::ivec3 parentMinusOwn{0};       ///< twice the parent's origin minus the tile's, in the tile's steps
+
+  ParentVertices parentVertices(int i, int j) const noexcept {
+    const int column = (i >> 1) + firstColumn, row = (j >> 1) + firstRow;
+    return {row * side + column, (row + (j & 1)) * side + column + (i & 1)};
+  }
+};
+
+/// Empty where the two do not fit on one another: other cells, an odd number of them, other steps, origins far apart.
+/// Precondition: tile.path is a child of parent.path.
+std::optional<MorphGrid> morphGrid(const TileMetadata& tile, const TileMetadata& parent) noexcept;
+
+/// A tile's morph values by place: rows VMin, between, VMax of columns UMin, between, UMax.
+std::array<float, 9> morphByPlace(const TileMorph& morph) noexcept;
+/// Of vertex (i, j) of a grid with so many vertices in a row.
+inline float morphAt(const std::array<float, 9>& byPlace, int side, int i, int j) noexcept {
+  const auto place = [side](int at) { return at == 0 ? 0u : at == side - 1 ? 2u : 1u; };
+  return byPlace[3 * place(j) + place(i)];
+}
+
+}  // namespace terrane
