@@ -72,6 +72,7 @@ void moveBetweenFloats(Sample& sample) {
 Sample makeSampleOf(double metersFromOrigin, std::uint64_t seed, int camera, std::size_t vertices) {
   Sample sample = makeSample(metersFromOrigin, seed * 1009 + static_cast<std::uint64_t>(camera), vertices);
   constexpr Units kSplit = Units{1} << 36, kTile = Units{1} << 31;
+  if (metersFromOrigin < 65536) return sample;  // nearer than the first border
   UnitPoint border = sample.camera.units;
   switch (camera % 12) {
     case 3:
