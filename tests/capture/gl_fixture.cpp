@@ -1,21 +1,10 @@
 #include "tests/capture/gl_fixture.h"
 
-#include <stdexcept>
-
 #include "client/gl/capabilities.h"
+#include "tests/support/require.h"
 #include "tests/support/shared_window.h"
 
 namespace terrane {
-namespace {
-
-template <class T>
-T require(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().text());
-  return std::move(*result);
-}
-
-}  // namespace
-
 void GlTest::SetUp() {
   const auto window = sharedWindow();
   ASSERT_TRUE(window) << window.error().text();

@@ -5,18 +5,9 @@
 #include "proto/resident_tile.h"
 #include "server/fields/height_field.h"
 #include "server/scenes/scene_file.h"
+#include "tests/support/require.h"
 
 namespace terrane {
-namespace {
-
-template <class T>
-T require(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().text());
-  return std::move(*result);
-}
-
-}  // namespace
-
 TestScene shippedScene(const std::string& name) {
   Scene scene = require(loadScene(name));
   return {scene.bodies.front(), scene.effects};
