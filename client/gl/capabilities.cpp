@@ -43,6 +43,7 @@ Capabilities detectCapabilities(bool forceBaseline) {
   found.renderer = glText(GL_RENDERER);
   found.versionText = glText(GL_VERSION);
   found.rendersOnCpu = isSoftwareRenderer(found.renderer);
+  found.maxSamples = maxSamples();
   if (forceBaseline) return found;
   found.version = epoxy_gl_version();
   found.shadingLanguage = found.version >= 45 ? 450 : found.version >= 40 ? 400 : 330;
@@ -53,6 +54,13 @@ Capabilities detectCapabilities(bool forceBaseline) {
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &words);
   found.bufferWords = std::max(found.bufferWords, static_cast<std::size_t>(std::max(words, 0)));
   return found;
+}
+
+int maxSamples() {
+  GLint color = 0, depth = 0;
+  glGetIntegerv(GL_MAX_SAMPLES, &color);
+  glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &depth);
+  return std::max(1, std::min(color, depth));
 }
 
 std::string takeErrors() {

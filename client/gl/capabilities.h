@@ -14,11 +14,15 @@ struct Capabilities {
   bool preciseByExtension = false;
   std::size_t bufferWords = 65536;  ///< that a shader can read of a buffer
   bool rendersOnCpu = false;        ///< software GL: what it holds back of a frame is the program's own memory
+  int maxSamples = 1;               ///< a pixel, that colour and a depth texture can both have
   std::string renderer, versionText;
 };
 
 /// forceBaseline: report bare 3.3 whatever the context has, so that the baseline path can be tested anywhere.
 Capabilities detectCapabilities(bool forceBaseline = false);
+
+/// Capabilities::maxSamples, asked anew.
+int maxSamples();
 
 /// Names of the GL errors raised since the last call ("INVALID_OPERATION"), empty when there are none.
 std::string takeErrors();

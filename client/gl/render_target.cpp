@@ -3,11 +3,75 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-namespace terrane {
+#include <algorithm>
 
-Result<RenderTarget> RenderTarget::create(int widthPixels, int heightPixels, TargetFormat format) {
-  GLint limit = 0;
-  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &limit);
+#include "client/gl/capabilities.h"
+
+namespace terrane {
+namespace {
+
+using Framebuffer = gl::Handle<gl::ObjectKind::Framebuffer>;
+using Renderbuffer = gl::Handle<gl::ObjectKind::Renderbuffer>;
+using Texture = gl::Handle<gl::ObjectKind::Texture>;
+
+struct Shape {
+  int widthPixels, heightPixels, samples;
+};
+
+/// Read by texel: no mipmaps, nothing between texels.
+Texture makeTexture(GLenum internalFormat, GLenum format, GLenum type, const Shape& shape) {
+  GLuint id = 0;
+  glGenTextures(1, &id);
+  Texture texture(id);
+  if (shape.samples > 1) {
+    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, id);
+    // At fixed places, as those of a renderbuffer are: GL asks that of what is mixed with one.
+    glTexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, shape.samples, internalFormat, shape.widthPixels,
+                            shape.heightPixels, GL_TRUE);
+    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, 0);
+    return texture;
+  }
+  glBindTexture(GL_TEXTURE_2D, id);
+  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalFormat), shape.widthPixels, shape.heightPixels, 0, format,
+               type, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glBindTexture(GL_TEXTURE_2D, 0);
+  return texture;
+}
+
+Renderbuffer makeRenderbuffer(GLenum internalFormat, const Shape& shape) {
+  GLuint id = 0;
+  glGenRenderbuffers(1, &id);
+  glBindRenderbuffer(GL_RENDERBUFFER, id);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, shape.samples, internalFormat, shape.widthPixels,
+                                   shape.heightPixels);
+  return Renderbuffer(id);
+}
+
+/// Leaves it bound.
+Framebuffer makeFramebuffer() {
+  GLuint id = 0;
+  glGenFramebuffers(1, &id);
+  glBindFramebuffer(GL_FRAMEBUFFER, id);
+  return Framebuffer(id);
+}
+
+void bindTexture(GLenum target, const Texture& texture, int unit) {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(target, texture.id());
+  glActiveTexture(GL_TEXTURE0);
+}
+
+}  // namespace
+
+Result<RenderTarget> RenderTarget::create(int widthPixels, int heightPixels, TargetFormat format, int samples) {
+  GLint renderbuffers = 0, textures = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &renderbuffers);
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &textures);
+  const int limit = std::min(renderbuffers, textures);
   if (widthPixels < 1 || heightPixels < 1 || widthPixels > limit || heightPixels > limit) {
     return makeError(ErrorKind::TooLarge, "framebuffer",
                      fmt::format("{}x{} pixels; this driver allows 1 to {} a side", widthPixels, heightPixels, limit));
@@ -15,30 +79,47 @@ Result<RenderTarget> RenderTarget::create(int widthPixels, int heightPixels, Tar
   RenderTarget target;
   target.widthPixels_ = widthPixels;
   target.heightPixels_ = heightPixels;
-  GLuint ids[2] = {};
-  glGenRenderbuffers(2, ids);
-  target.color_ = gl::Handle<gl::ObjectKind::Renderbuffer>(ids[0]);
-  target.depth_ = gl::Handle<gl::ObjectKind::Renderbuffer>(ids[1]);
-  glBindRenderbuffer(GL_RENDERBUFFER, ids[0]);
-  glRenderbufferStorage(GL_RENDERBUFFER, format == TargetFormat::R8 ? GL_R8 : GL_RGBA8, widthPixels, heightPixels);
-  glBindRenderbuffer(GL_RENDERBUFFER, ids[1]);
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, widthPixels, heightPixels);
-
-  GLuint framebuffer = 0;
+  target.samples_ = std::clamp(samples, 1, gl::maxSamples());
   GLint previous = 0;
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &previous);
-  glGenFramebuffers(1, &framebuffer);
-  target.framebuffer_ = gl::Handle<gl::ObjectKind::Framebuffer>(framebuffer);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, ids[0]);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, ids[1]);
-  const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+  const auto attached = target.attach(format);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(previous));
+  if (!attached) return attached.error();
+  return target;
+}
+
+/// Makes the framebuffers and what they show. Leaves one of them bound.
+Result<bool> RenderTarget::attach(TargetFormat format) {
+  const bool red = format == TargetFormat::R8;
+  const GLenum colorFormat = red ? GL_R8 : GL_RGBA8;
+  const Shape shape{widthPixels_, heightPixels_, samples_};
+  color_ = makeTexture(colorFormat, red ? GL_RED : GL_RGBA, GL_UNSIGNED_BYTE, {widthPixels_, heightPixels_, 1});
+  depth_ = makeTexture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, shape);
+  if (samples_ > 1) sampledColor_ = makeRenderbuffer(colorFormat, shape);
+
+  GLenum status = GL_FRAMEBUFFER_COMPLETE;
+  const auto finish = [&](Framebuffer& framebuffer, bool sampled, bool depth) {
+    framebuffer = makeFramebuffer();
+    if (sampled)
+      glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, sampledColor_.id());
+    else
+      glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, color_.id(), 0);
+    if (depth) glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth_.id(), 0);
+    const GLenum found = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status == GL_FRAMEBUFFER_COMPLETE) status = found;
+  };
+  if (samples_ > 1) finish(resolved_, false, false);
+  finish(colorOnly_, samples_ > 1, false);
+  finish(framebuffer_, samples_ > 1, true);
   if (status != GL_FRAMEBUFFER_COMPLETE) {
     return makeError(ErrorKind::Unsupported, "framebuffer",
                      fmt::format("the driver refuses it (status {:#x})", status));
   }
-  return target;
+  // A driver may give more samples than were asked for.
+  GLint given = 0;
+  glGetIntegerv(GL_SAMPLES, &given);
+  samples_ = std::max(1, given);
+  return true;
 }
 
 void RenderTarget::bind() const {
@@ -46,11 +127,34 @@ void RenderTarget::bind() const {
   glViewport(0, 0, widthPixels_, heightPixels_);
 }
 
+void RenderTarget::bindColorOnly() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, colorOnly_.id());
+  glViewport(0, 0, widthPixels_, heightPixels_);
+}
+
+void RenderTarget::bindForReading() const {
+  if (resolved_) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.id());
+    glBlitFramebuffer(0, 0, widthPixels_, heightPixels_, 0, 0, widthPixels_, heightPixels_, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.id());
+  }
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, readable());
+}
+
+void RenderTarget::bindDepthTexture(int unit) const {
+  bindTexture(samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D, depth_, unit);
+}
+
+void RenderTarget::bindColorTexture(int unit) const { bindTexture(GL_TEXTURE_2D, color_, unit); }
+
 void RenderTarget::bindWindow() { glBindFramebuffer(GL_FRAMEBUFFER, 0); }
 
 void RenderTarget::blitToWindow(int windowWidthPixels, int windowHeightPixels) const {
   const bool sameSize = windowWidthPixels == widthPixels_ && windowHeightPixels == heightPixels_;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+  // By way of the resolved colour: straight from several samples GL allows neither scaling nor another format.
+  bindForReading();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glBlitFramebuffer(0, 0, widthPixels_, heightPixels_, 0, 0, windowWidthPixels, windowHeightPixels, GL_COLOR_BUFFER_BIT,
                     sameSize ? GL_NEAREST : GL_LINEAR);
@@ -60,7 +164,7 @@ void RenderTarget::blitToWindow(int windowWidthPixels, int windowHeightPixels) c
 
 std::vector<std::uint8_t> RenderTarget::readRed() const {
   std::vector<std::uint8_t> red(static_cast<std::size_t>(widthPixels_) * static_cast<std::size_t>(heightPixels_));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+  bindForReading();
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, widthPixels_, heightPixels_, GL_RED, GL_UNSIGNED_BYTE, red.data());
   return red;

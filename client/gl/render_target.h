@@ -1,6 +1,7 @@
 #pragma once
 // An offscreen framebuffer of exact size: colour of 8 bits a channel and a 32-bit float depth buffer, without which
-// reversed depth would be worth nothing (a window's own depth buffer has 24 fixed bits). GL thread only.
+// reversed depth would be worth nothing (a window's own depth buffer has 24 fixed bits). Depth is a texture, so that a
+// later pass can read how far away the scene is. GL thread only.
 
 #include <cstdint>
 #include <vector>
@@ -14,14 +15,27 @@ enum class TargetFormat : std::uint8_t { Rgba8, R8 };
 
 class RenderTarget {
  public:
-  /// Errors: TooLarge, Unsupported ("framebuffer").
-  static Result<RenderTarget> create(int widthPixels, int heightPixels, TargetFormat format = TargetFormat::Rgba8);
+  /// samples: a pixel, for smooth edges; 1 is none. More than the driver has gives the most that it has (samples(),
+  /// Capabilities::maxSamples). Errors: TooLarge, Unsupported ("framebuffer").
+  static Result<RenderTarget> create(int widthPixels, int heightPixels, TargetFormat format = TargetFormat::Rgba8,
+                                     int samples = 1);
 
   int widthPixels() const noexcept { return widthPixels_; }
   int heightPixels() const noexcept { return heightPixels_; }
+  int samples() const noexcept { return samples_; }
 
-  /// For drawing and reading; sets the viewport.
+  /// For drawing, and for reading where there is one sample; sets the viewport.
   void bind() const;
+  /// The same colour without the depth buffer: for a pass that reads depth while it blends into the colour.
+  void bindColorOnly() const;
+  /// For reading (readFramebuffer): brings every pixel's samples together first. Drawing goes where bind sends it.
+  void bindForReading() const;
+  /// Depth, near / w, as a texture: sampler2D, or sampler2DMS where there are several samples. To be fetched by texel,
+  /// in passes bound by bindColorOnly or to another target.
+  void bindDepthTexture(int unit) const;
+  /// Colour as a sampler2D, as of the last bindForReading or blitToWindow where there are several samples.
+  void bindColorTexture(int unit) const;
+
   /// Binds the window's own framebuffer again.
   static void bindWindow();
   /// Copies the colour to the window's framebuffer, scaled if the sizes differ, and leaves that bound.
@@ -31,9 +45,13 @@ class RenderTarget {
 
  private:
   RenderTarget() = default;
-  int widthPixels_ = 0, heightPixels_ = 0;
-  gl::Handle<gl::ObjectKind::Framebuffer> framebuffer_;
-  gl::Handle<gl::ObjectKind::Renderbuffer> color_, depth_;
+  Result<bool> attach(TargetFormat format);
+  unsigned readable() const noexcept { return resolved_ ? resolved_.id() : framebuffer_.id(); }
+
+  int widthPixels_ = 0, heightPixels_ = 0, samples_ = 1;
+  gl::Handle<gl::ObjectKind::Texture> color_, depth_;
+  gl::Handle<gl::ObjectKind::Renderbuffer> sampledColor_;  ///< only with several samples
+  gl::Handle<gl::ObjectKind::Framebuffer> framebuffer_, colorOnly_, resolved_;
 };
 
 }  // namespace terrane
