@@ -27,6 +27,7 @@ HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const D
   state.askedErrorPixels = session.errorPixels;
   state.tilesDrawn = drawn.tiles;
   state.triangles = drawn.triangles;
+  state.samples = drawn.samples;
   state.tilesLoading = session.missing();
   state.tilesResident = stream.resident;
   state.bytesReceived = stream.bytesReceived;

@@ -305,8 +305,7 @@ void InteractiveRun::sleep(const UpdateReport& report) {
 Done InteractiveRun::writeResults() {
   if (!options_.statsFile.empty()) {
     describeSession(*session_, options_, statistics_);
-    statistics_.tilesDrawn = drawn_.tiles;
-    statistics_.trianglesDrawn = drawn_.triangles;
+    statistics_.drawn = drawn_;
     const auto written = writeTextFile(statisticsJson(statistics_), options_.statsFile, "--stats");
     if (!written) return written.error();
   }

@@ -47,8 +47,8 @@ struct PointStatistics {
 
 struct RunStatistics {
   FrameTimes frameTimes;
-  double msToSettle = -1;                          ///< from the program's start to the first full view; -1: never
-  std::size_t tilesDrawn = 0, trianglesDrawn = 0;  ///< in the last frame
+  double msToSettle = -1;  ///< from the program's start to the first full view; -1: never
+  DrawStats drawn;         ///< in the last frame
   std::uint64_t uncoveredPixels = 0, skirtPixels = 0, framesCounted = 0;
   std::uint64_t rssBytes = 0, gpuBytes = 0;
   double errorPixels = 0;

@@ -88,8 +88,9 @@ std::string statisticsJson(const RunStatistics& s) {
              fmt::format(R"({{"p50": {}, "p99": {}, "max": {}}})", milliseconds(s.frameTimes.percentile(0.5)),
                          milliseconds(s.frameTimes.percentile(0.99)), milliseconds(s.frameTimes.longest())));
   object.add("msToSettle", s.msToSettle < 0 ? "null" : milliseconds(s.msToSettle));
-  object.add("tilesDrawn", s.tilesDrawn);
-  object.add("trianglesDrawn", s.trianglesDrawn);
+  object.add("tilesDrawn", s.drawn.tiles);
+  object.add("trianglesDrawn", s.drawn.triangles);
+  object.add("msaaSamples", static_cast<std::uint64_t>(s.drawn.samples));
   object.add("tilesResident", s.stream.resident);
   object.add("tilesFailed", s.stream.failed);
   object.add("tilesEvicted", s.stream.evicted);

@@ -62,7 +62,8 @@ std::optional<double> parseNumber(std::string_view text) {
 struct RawOptions {
   ViewOptions options;
   std::optional<std::string> camera;
-  std::string size = "1280x720", placement = "auto", cache, cacheBudget = "512MiB", memoryBudget = "128MiB";
+  std::string size = "1280x720", placement = "auto", samples = "auto", cache, cacheBudget = "512MiB",
+              memoryBudget = "128MiB";
   double fieldOfViewDegrees = 50;
 };
 
@@ -148,6 +149,24 @@ void declareOptions(CLI::App& app, RawOptions& raw) {
   app.add_flag("--explain", o.explain, "Print each effect, on or off, why, and what it costs here; then leave");
 }
 
+void declarePictureOptions(CLI::App& app, RawOptions& raw) {
+  app.add_option(
+         "--msaa", raw.samples,
+         "Samples a pixel for smooth edges, 2, 4 or 8, or off; auto is 4 on a GPU and off where software draws. "
+         "More than the driver has are the most that it has")
+      ->type_name("N|auto|off")
+      ->capture_default_str();
+}
+
+Result<std::optional<int>> parseSamples(std::string_view text) {
+  if (text == "auto") return std::optional<int>();
+  constexpr std::array<std::pair<std::string_view, int>, 5> kNames{
+      {{"off", 1}, {"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}};
+  for (const auto& [name, samples] : kNames)
+    if (name == text) return std::optional<int>(samples);
+  return flagError("--msaa", fmt::format("'{}' is none of auto, off, 1, 2, 4, 8", text));
+}
+
 Result<std::size_t> checkRange(std::string_view flag, double value, double low, double high) {
   if (value >= low && value <= high) return std::size_t{0};
   return flagError(flag, fmt::format("{} is out of range: {} to {}", value, low, high));
@@ -192,6 +211,9 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
     if (!placement) return placement.error();
     o.placement = *placement;
   }
+  const auto samples = parseSamples(raw.samples);
+  if (!samples) return samples.error();
+  o.samples = *samples;
   for (const auto& range :
        {checkRange("--fov", raw.fieldOfViewDegrees, 1, 150), checkRange("--error", o.errorPixels, 0.1, 100),
         checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e6),
@@ -303,6 +325,7 @@ Result<std::variant<ViewOptions, OptionsText>> parseViewOptions(const std::vecto
   CLI::App app{kDescription, "terrane-view"};
   RawOptions raw;
   declareOptions(app, raw);
+  declarePictureOptions(app, raw);
   app.footer(std::string(kFooter) + "\n\n" + kExitStatusHelp);
   app.set_version_flag("--version", "terrane-view " TERRANE_VERSION);
   app.get_formatter()->column_width(40);

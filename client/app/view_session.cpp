@@ -119,6 +119,7 @@ Result<bool> ViewSession::ready() {
   s.renderer = std::move(*renderer);
   s.stream->selectBody(s.options.body.empty() ? 0 : static_cast<std::size_t>(found - scene->bodies.begin()));
   drawSettings.placement = s.options.placement.value_or(s.renderer->selfTest().chosen);
+  drawSettings.samples = s.options.samples.value_or(s.renderer->samplesByDefault());
   return true;
 }
 

@@ -63,6 +63,12 @@ int maxSamples() {
   return std::max(1, std::min(color, depth));
 }
 
+int boundSamples() {
+  GLint samples = 0;
+  glGetIntegerv(GL_SAMPLES, &samples);
+  return std::max(1, samples);
+}
+
 std::string takeErrors() {
   std::string names;
   // A lost context reports an error for ever: stop after as many as could be meant.

@@ -23,6 +23,8 @@ Capabilities detectCapabilities(bool forceBaseline = false);
 
 /// Capabilities::maxSamples, asked anew.
 int maxSamples();
+/// Samples a pixel of the framebuffer that is bound for drawing.
+int boundSamples();
 
 /// Names of the GL errors raised since the last call ("INVALID_OPERATION"), empty when there are none.
 std::string takeErrors();

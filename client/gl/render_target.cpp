@@ -79,6 +79,7 @@ Result<RenderTarget> RenderTarget::create(int widthPixels, int heightPixels, Tar
   RenderTarget target;
   target.widthPixels_ = widthPixels;
   target.heightPixels_ = heightPixels;
+  target.samplesAsked_ = samples;
   target.samples_ = std::clamp(samples, 1, gl::maxSamples());
   GLint previous = 0;
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &previous);
@@ -116,9 +117,7 @@ Result<bool> RenderTarget::attach(TargetFormat format) {
                      fmt::format("the driver refuses it (status {:#x})", status));
   }
   // A driver may give more samples than were asked for.
-  GLint given = 0;
-  glGetIntegerv(GL_SAMPLES, &given);
-  samples_ = std::max(1, given);
+  samples_ = gl::boundSamples();
   return true;
 }
 

@@ -23,6 +23,10 @@ class RenderTarget {
   int widthPixels() const noexcept { return widthPixels_; }
   int heightPixels() const noexcept { return heightPixels_; }
   int samples() const noexcept { return samples_; }
+  /// What create would make of these, but for the format.
+  bool isLike(int widthPixels, int heightPixels, int samplesAsked) const noexcept {
+    return widthPixels == widthPixels_ && heightPixels == heightPixels_ && samplesAsked == samplesAsked_;
+  }
 
   /// For drawing, and for reading where there is one sample; sets the viewport.
   void bind() const;
@@ -48,7 +52,7 @@ class RenderTarget {
   Result<bool> attach(TargetFormat format);
   unsigned readable() const noexcept { return resolved_ ? resolved_.id() : framebuffer_.id(); }
 
-  int widthPixels_ = 0, heightPixels_ = 0, samples_ = 1;
+  int widthPixels_ = 0, heightPixels_ = 0, samples_ = 1, samplesAsked_ = 1;
   gl::Handle<gl::ObjectKind::Texture> color_, depth_;
   gl::Handle<gl::ObjectKind::Renderbuffer> sampledColor_;  ///< only with several samples
   gl::Handle<gl::ObjectKind::Framebuffer> framebuffer_, colorOnly_, resolved_;

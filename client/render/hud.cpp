@@ -37,6 +37,7 @@ void figureRows(const HudState& s) {
                    : fmt::format("{:.2g} px", s.errorPixels));
   row("tiles", fmt::format("{} drawn, {} loading, {} held", s.tilesDrawn, s.tilesLoading, s.tilesResident));
   row("triangles", countText(s.triangles));
+  row("edges", s.samples > 1 ? fmt::format("{} samples a pixel", s.samples) : "one sample a pixel");
   row("received", bytesText(s.bytesReceived));
   row("memory", fmt::format("{} process, {} tiles, {} GPU", bytesText(s.rssBytes), bytesText(s.residentBytes),
                             bytesText(s.gpuBytes)));

@@ -20,6 +20,7 @@ struct HudState {
   std::span<const float> frameMs;  ///< of the last frames, oldest first
   double medianMs = 0;
   double errorPixels = 0, askedErrorPixels = 0;
+  int samples = 1;  ///< a pixel
   std::size_t tilesDrawn = 0, tilesLoading = 0, tilesResident = 0, triangles = 0;
   std::size_t bytesReceived = 0, residentBytes = 0, gpuBytes = 0, rssBytes = 0;
   std::string placement, selfTest, mode, link, notice;  ///< link, notice: empty when there is nothing to say

@@ -23,6 +23,7 @@ namespace {
 /// draws some while it sorts the next, and needs some tens of megabytes less. (A GPU is not told: one that draws by
 /// screen tiles would pay for it.)
 constexpr int kTilesPerFlush = 8;
+constexpr int kSamplesOnGpu = 4;
 
 /// Hues a golden angle apart, so that neighbouring levels differ.
 glm::vec3 levelTint(int level) {
@@ -77,6 +78,16 @@ std::size_t drawList(const IndexList& list) {
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(list.count), list.wide ? GL_UNSIGNED_INT : GL_UNSIGNED_SHORT,
                  nullptr);
   return list.count / 3;
+}
+
+/// Makes the target anew where it is not as it must be. False if the driver refuses.
+bool provide(std::optional<RenderTarget>& target, const Camera& camera, TargetFormat format, int samples) {
+  if (target && target->isLike(camera.widthPixels, camera.heightPixels, samples)) return true;
+  target.reset();
+  auto created = RenderTarget::create(camera.widthPixels, camera.heightPixels, format, samples);
+  if (!created) return false;
+  target.emplace(std::move(*created));
+  return true;
 }
 
 std::vector<DrawnTile> asTheyAre(std::span<const FacePath> paths) {
@@ -177,6 +188,7 @@ struct TileRenderer::State {
   DrawStats drawTiles(const Camera& camera, std::span<const DrawnTile> list, const DrawSettings& settings,
                       Placement placement) {
     DrawStats stats;
+    stats.samples = gl::boundSamples();
     const TilePass pass(capabilities, settings.wireframe);
     forEachTile(camera, nearestFirst(camera, list, settings.skirts), placement, TilePurpose::Shaded,
                 [&](const TileProgram& program, const TileDraw& draw) {
@@ -215,6 +227,8 @@ Placement TileRenderer::usable(Placement requested) const noexcept {
   return requested;
 }
 
+int TileRenderer::samplesByDefault() const noexcept { return state_->capabilities.rendersOnCpu ? 1 : kSamplesOnGpu; }
+
 std::size_t TileRenderer::upload(const std::shared_ptr<const Tile>& tile) { return state_->tiles.upload(*tile); }
 void TileRenderer::remove(const FacePath& path) { state_->tiles.remove(path); }
 void TileRenderer::clear() { state_->tiles.clear(); }
@@ -233,12 +247,7 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const DrawnTile> ti
     return state_->drawTiles(camera, tiles, settings, placement);
   }
   std::optional<RenderTarget>& target = state_->windowTarget;
-  if (!target || target->widthPixels() != camera.widthPixels || target->heightPixels() != camera.heightPixels) {
-    target.reset();
-    auto created = RenderTarget::create(camera.widthPixels, camera.heightPixels);
-    if (!created) return {};
-    target.emplace(std::move(*created));
-  }
+  if (!provide(target, camera, TargetFormat::Rgba8, settings.samples)) return {};
   target->bind();
   const DrawStats stats = state_->drawTiles(camera, tiles, settings, placement);
   target->blitToWindow(camera.widthPixels, camera.heightPixels);
@@ -257,12 +266,7 @@ CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const 
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
   glGetIntegerv(GL_VIEWPORT, viewport.data());
   std::optional<RenderTarget>& target = state_->coverageTarget;
-  if (!target || target->widthPixels() != camera.widthPixels || target->heightPixels() != camera.heightPixels) {
-    target.reset();
-    auto created = RenderTarget::create(camera.widthPixels, camera.heightPixels, TargetFormat::R8);
-    if (!created) return {};
-    target.emplace(std::move(*created));
-  }
+  if (!provide(target, camera, TargetFormat::R8, 1)) return {};
   target->bind();
   {
     const TilePass pass(state_->capabilities, false);

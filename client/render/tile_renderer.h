@@ -35,6 +35,8 @@ struct DrawSettings {
   /// Draw every tile's skirts. Not needed where edges towards coarser tiles are morphed and stitched to them; a tile
   /// that cannot be (DrawnTile) is drawn with its skirts anyway.
   bool skirts = false;
+  /// A pixel, for smooth edges, where draw makes the target: with the window's own framebuffer bound.
+  int samples = 1;
 };
 
 struct RendererOptions {
@@ -44,6 +46,7 @@ struct RendererOptions {
 
 struct DrawStats {
   std::size_t tiles = 0, triangles = 0, drawCalls = 0;
+  int samples = 1;  ///< a pixel, of the target that was drawn into: at most what the driver has
 };
 
 struct CoverageCount {
@@ -61,6 +64,8 @@ class TileRenderer {
   const SelfTestReport& selfTest() const noexcept;
   /// What draw really uses when asked for a placement: what this GPU does not compute exactly falls back to Cpu.
   Placement usable(Placement requested) const noexcept;
+  /// DrawSettings::samples where nobody asks for any: 4 on a GPU, 1 where software draws, which pays for each.
+  int samplesByDefault() const noexcept;
 
   /// Uploads; returns the bytes taken on the GPU (shared index buffers are counted once).
   std::size_t upload(const std::shared_ptr<const Tile>& tile);

@@ -46,6 +46,7 @@ TEST(ViewOptions, DefaultsAreThoseThatHelpStates) {
   EXPECT_EQ(options.errorPixels, 2);
   EXPECT_EQ(options.frameBudgetMs, 0);
   EXPECT_FALSE(options.placement);
+  EXPECT_FALSE(options.samples);
   EXPECT_DOUBLE_EQ(options.verticalFieldOfView, 50 * kDegrees);
 }
 
@@ -98,6 +99,12 @@ TEST(ViewOptions, EveryPlacementHasItsName) {
   }
 }
 
+TEST(ViewOptions, SamplesAPixelAreANumberOrOffOrWhatSuitsTheRenderer) {
+  EXPECT_FALSE(parsed({"--msaa", "auto"}).samples);
+  EXPECT_EQ(parsed({"--msaa", "off"}).samples, 1);
+  for (const int samples : {1, 2, 4, 8}) EXPECT_EQ(parsed({"--msaa", std::to_string(samples)}).samples, samples);
+}
+
 struct Wrong {
   std::vector<std::string> arguments;
   std::string flag;
@@ -131,6 +138,8 @@ TEST(ViewOptions, WhatIsWrongIsNamedByItsFlag) {
       {{"--error", "nan"}, "--error"},
       {{"--frame-budget", "-1"}, "--frame-budget"},
       {{"--placement", "float64"}, "--placement"},
+      {{"--msaa", "3"}, "--msaa"},
+      {{"--msaa", "on"}, "--msaa"},
       {{"--frames", "-3"}, "--frames"},
       {{"--frames", "1000000000"}, "--frames"},
       {{"--frames", "1.5"}, "--frames"},
@@ -171,6 +180,7 @@ TEST(ViewOptions, HelpExplainsEveryFlagAndEveryKey) {
                            "--error",
                            "--frame-budget",
                            "--placement",
+                           "--msaa",
                            "--headless",
                            "--settle",
                            "--capture",

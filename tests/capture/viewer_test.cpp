@@ -36,10 +36,10 @@ TEST_F(Viewer, SettlesAtACameraCapturesItAndWritesEveryFigure) {
   EXPECT_EQ(image->width, 320);
   EXPECT_EQ(image->height, 180);
   const std::string json = readFile(folder_ / "a.json");
-  for (const char* key : {"framesDrawn", "frameMs",       "p50",         "p99",           "max",      "msToSettle",
-                          "tilesDrawn",  "tilesResident", "requests",    "bytesReceived", "decodeMs", "uncoveredPixels",
-                          "skirtPixels", "rssBytes",      "gpuBytes",    "placement",     "selfTest", "errorPixels",
-                          "camera",      "effects",       "constructed", "renderer",      "points"})
+  for (const char* key : {"framesDrawn", "frameMs",       "p50",      "p99",           "max",      "msToSettle",
+                          "tilesDrawn",  "tilesResident", "requests", "bytesReceived", "decodeMs", "uncoveredPixels",
+                          "skirtPixels", "rssBytes",      "gpuBytes", "placement",     "selfTest", "errorPixels",
+                          "msaaSamples", "camera",        "effects",  "constructed",   "renderer", "points"})
     EXPECT_NE(json.find(std::string(1, '"').append(key).append("\": ")), std::string::npos) << key;
   EXPECT_EQ(jsonNumber(json, "framesDrawn"), 8);
   EXPECT_EQ(jsonNumber(json, "framesCounted"), 8);
@@ -61,6 +61,30 @@ TEST_F(Viewer, ThePictureOfTheWholeBodyHasABrightDiscAndBlackCorners) {
   EXPECT_LT(brightness(2, 2), 30);
   EXPECT_LT(brightness(317, 177), 30);
   EXPECT_GT(brightness(200, 90), 90);
+}
+
+TEST_F(Viewer, SeveralSamplesAPixelAreDrawnAndReported) {
+  const auto captured = [&](const std::string& samples) {
+    const std::string name = folder_ / samples;
+    const auto outcome =
+        view({"--camera", "-10,8,6000000", "--msaa", samples, "--capture", name + ".png", "--stats", name + ".json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return std::pair(readPng(name + ".png").value(), jsonNumber(readFile(name + ".json"), "msaaSamples"));
+  };
+  const auto [hard, one] = captured("off");
+  const auto [smooth, four] = captured("4");
+  EXPECT_EQ(one, 1);
+  EXPECT_EQ(four, 4);
+  EXPECT_GE(captured("8").second, four) << "as many as there are";
+  // Down the picture's middle: both go from black to ground at the same row, the smooth one by a shade in between.
+  const auto edgeRow = [](const Image& image) {
+    std::size_t row = 0;
+    while (row + 1 < 180 && image.rgb[3 * (row * 320 + 160)] < 8) ++row;
+    return static_cast<int>(row);
+  };
+  EXPECT_NEAR(edgeRow(hard), edgeRow(smooth), 1);
+  EXPECT_NE(hard.rgb, smooth.rgb);
+  EXPECT_LT(rmsDifference(hard, smooth), 8);
 }
 
 TEST_F(Viewer, TheSameCameraGivesTheSamePictureTwice) {
