@@ -1,9 +1,22 @@
 #include "client/app/hud_state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 
+#include "client/render/readable_units.h"
+
 namespace terrane {
+namespace {
+
+std::string networkText(const NetworkConditions& network) {
+  if (!network.simulated()) return {};
+  const std::string bandwidth = network.bytesPerSecond == 0 ? "" : ", " + bytesText(network.bytesPerSecond) + "/s";
+  return fmt::format("simulated: {} ms{}", network.latency.count(), bandwidth);
+}
+
+}  // namespace
 
 HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const DrawStats& drawn,
                     std::vector<float>& frameMs) {
@@ -37,6 +50,7 @@ HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const D
   state.placement = placementName(session.drawSettings.placement);
   state.selfTest = selfTestText(session.selfTest());
   state.mode = "scripted";
+  state.network = networkText(stream.network);
   state.link = stream.message;
   state.progress = session.progress();
   state.frozen = session.frozen;

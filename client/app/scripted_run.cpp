@@ -44,6 +44,7 @@ class ScriptedRun {
   Result<FlightPlan> plan();
   Done flyPlan(const FlightPlan& plan);
   Done settle(const ViewSession::View& view, bool wholly);
+  void waitUntil(Clock::time_point due);
   void drawFrame(const ViewSession::View& view);
   Done finishPoint(const PlannedFrame& frame, bool aboveGround);
   Done capture(const std::string& file);
@@ -54,6 +55,9 @@ class ScriptedRun {
     return options_.headless ? std::array{options_.widthPixels, options_.heightPixels} : window_.framebufferSize();
   }
   bool counting() const { return !options_.statsFile.empty(); }
+  /// A flight that is over before a simulated network has brought anything would show nothing of it: frames come no
+  /// faster than the seconds that they stand for.
+  bool inRealTime() const { return options_.network.simulated() && !options_.settle; }
 
   const ViewOptions& options_;
   Window& window_;
@@ -123,6 +127,10 @@ Done ScriptedRun::settle(const ViewSession::View& view, bool wholly) {
   }
 }
 
+void ScriptedRun::waitUntil(Clock::time_point due) {
+  for (double ms = -millisecondsSince(due); ms > 0; ms = -millisecondsSince(due)) window_.wait(ms / 1000);
+}
+
 void ScriptedRun::drawFrame(const ViewSession::View& view) {
   const auto begin = Clock::now();
   const UpdateReport report = session_->update(view, options_.settle ? kUnlimitedUpload : UploadBudget{});
@@ -188,6 +196,7 @@ Done ScriptedRun::finishPoint(const PlannedFrame& frame, bool aboveGround) {
 
 Done ScriptedRun::flyPlan(const FlightPlan& plan) {
   const bool capturesPoints = options_.captureFile.find("%d") != std::string::npos;
+  Clock::time_point lastBegin = Clock::now();
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
     const PlannedFrame& frame = plan.frames[i];
     const auto [width, height] = pictureSize();
@@ -195,6 +204,10 @@ Done ScriptedRun::flyPlan(const FlightPlan& plan) {
     // A flight begins with a full view, so that what it shows does not depend on how fast the first tiles came.
     if (options_.settle || (i == 0 && plan.points > 0))
       if (const Done settled = settle(view, options_.settle); !settled) return settled.error();
+    if (i > 0 && inRealTime())
+      waitUntil(lastBegin + std::chrono::duration_cast<Clock::duration>(
+                                std::chrono::duration<double>(frame.seconds - plan.frames[i - 1].seconds)));
+    lastBegin = Clock::now();
     drawFrame(view);
     record_.points.push_back({frame.seconds, session_->pose()});
     if (frame.point >= 0)

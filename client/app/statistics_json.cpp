@@ -99,6 +99,10 @@ std::string statisticsJson(const RunStatistics& s) {
   object.add("cacheHits", s.stream.cacheHits);
   object.add("bytesReceived", s.stream.bytesReceived);
   object.add("decodeMs", milliseconds(s.stream.decodeMs));
+  if (s.stream.network.simulated()) {
+    object.add("latencyMs", static_cast<std::uint64_t>(s.stream.network.latency.count()));
+    object.add("bandwidthBytesPerSecond", s.stream.network.bytesPerSecond);
+  }
   object.add("uncoveredPixels", s.uncoveredPixels);
   object.add("skirtPixels", s.skirtPixels);
   object.add("framesCounted", s.framesCounted);

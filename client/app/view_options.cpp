@@ -63,7 +63,8 @@ struct RawOptions {
   ViewOptions options;
   std::optional<std::string> camera;
   std::string size = "1280x720", placement = "auto", samples = "auto", cache, cacheBudget = "512MiB",
-              memoryBudget = "128MiB";
+              memoryBudget = "128MiB", bandwidth = "0";
+  int latencyMs = 0;
   double fieldOfViewDegrees = 50;
 };
 
@@ -146,6 +147,15 @@ void declareOptions(CLI::App& app, RawOptions& raw) {
   app.add_option("--memory-budget", raw.memoryBudget, "Most that tiles in memory take, what is in view excepted")
       ->type_name("SIZE")
       ->capture_default_str();
+  app.add_option("--latency", raw.latencyMs,
+                 "Fly under a worse network: no answer sooner than this after its request, 0..10000; 0 is off "
+                 "(default). The network's own time limits do not count it, --time-limit does. A scripted flight "
+                 "without --settle then takes its time, as in a window")
+      ->type_name("MS");
+  app.add_option("--bandwidth", raw.bandwidth,
+                 "The same: what all answers together may bring, as 2MB/s, 500KiB/s or in bytes per second; 0 is off "
+                 "(default)")
+      ->type_name("BYTES/S");
   app.add_flag("--explain", o.explain, "Print each effect, on or off, why, and what it costs here; then leave");
 }
 
@@ -218,7 +228,7 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
        {checkRange("--fov", raw.fieldOfViewDegrees, 1, 150), checkRange("--error", o.errorPixels, 0.1, 100),
         checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e6),
         checkRange("--step", o.stepSeconds, 1e-4, 1e6), checkRange("--time-limit", o.timeLimitSeconds, 0.1, 1e6),
-        checkCapture(o)})
+        checkRange("--latency", raw.latencyMs, 0, 10'000), checkCapture(o)})
     if (!range) return range.error();
   o.verticalFieldOfView = raw.fieldOfViewDegrees * kRadiansPerDegree;
   const auto cacheBudget = parseByteSize(raw.cacheBudget, "--cache-budget");
@@ -227,6 +237,9 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   if (!memoryBudget) return memoryBudget.error();
   o.cacheBudgetBytes = *cacheBudget;
   o.memoryBudgetBytes = *memoryBudget;
+  const auto bandwidth = parseBandwidth(raw.bandwidth);
+  if (!bandwidth) return bandwidth.error();
+  o.network = {std::chrono::milliseconds(raw.latencyMs), *bandwidth};
   if (o.headless && o.flight.empty() && o.frames == 0) o.settle = true;
   o.cacheIsDefault = raw.cache.empty();
   if (o.cacheIsDefault)
@@ -317,6 +330,26 @@ Result<std::size_t> parseByteSize(std::string_view text, std::string_view flag) 
   if (bytes < 1048576.0 || bytes > 1e15)
     return flagError(flag, fmt::format("\"{}\" is out of range: 1MiB to 900000GiB", text));
   return static_cast<std::size_t>(bytes);
+}
+
+Result<std::uint64_t> parseBandwidth(std::string_view text) {
+  constexpr std::string_view kFlag = "--bandwidth";
+  const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
+  const auto number = parseNumber(text.substr(0, unitAt));
+  const std::string_view unit = text.substr(unitAt);
+  double scale = 0;
+  for (const auto& [name, bytes] : {std::pair{"", 1.0}, std::pair{"B/s", 1.0}, std::pair{"KB/s", 1e3},
+                                    std::pair{"MB/s", 1e6}, std::pair{"GB/s", 1e9}, std::pair{"KiB/s", 1024.0},
+                                    std::pair{"MiB/s", 1048576.0}, std::pair{"GiB/s", 1073741824.0}})
+    if (unit == name) scale = bytes;
+  if (!number || scale == 0)
+    return flagError(kFlag,
+                     fmt::format("\"{}\" is no bandwidth: write it as 2MB/s, 500KiB/s or in bytes per second", text));
+  const double bytesPerSecond = *number * scale;
+  if (bytesPerSecond == 0) return std::uint64_t{0};
+  if (bytesPerSecond < 1e3 || bytesPerSecond > static_cast<double>(SimulatedLink::kMostBytesPerSecond))
+    return flagError(kFlag, fmt::format("\"{}\" is out of range: 1KB/s to 1000GB/s, or 0 for off", text));
+  return static_cast<std::uint64_t>(bytesPerSecond);
 }
 
 Result<std::variant<ViewOptions, OptionsText>> parseViewOptions(const std::vector<std::string>& arguments,

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "client/net/simulated_link.h"
 #include "client/render/tile_renderer.h"
 #include "common/result.h"
 #include "common/view/camera.h"
@@ -35,6 +36,7 @@ struct ViewOptions {
   bool cacheIsDefault = false;  ///< nobody asked for it: what goes wrong with it stops nothing
   std::size_t cacheBudgetBytes = 512u << 20;
   std::size_t memoryBudgetBytes = 128u << 20;
+  NetworkConditions network;
   int frames = 0;                 ///< 0: as many as it takes
   double stepSeconds = 1.0 / 30;  ///< of a scripted flight
   double timeLimitSeconds = 120;  ///< for one view to be complete in a scripted run
@@ -61,5 +63,7 @@ Result<std::pair<int, int>> parseSize(std::string_view text);
 Result<ViewPose> parseCamera(std::string_view text);
 /// "128MiB", "2GiB", "65536"; at least 1 MiB. Errors name the flag.
 Result<std::size_t> parseByteSize(std::string_view text, std::string_view flag);
+/// "2MB/s", "500KB/s", "2MiB/s", or bytes per second; 1 KB/s to 1000 GB/s, or 0. Errors name "--bandwidth".
+Result<std::uint64_t> parseBandwidth(std::string_view text);
 
 }  // namespace terrane

@@ -82,6 +82,7 @@ Result<std::unique_ptr<ViewSession>> ViewSession::open(const ViewOptions& option
   streamOptions.residentBudgetBytes = options.memoryBudgetBytes;
   streamOptions.cacheFile = options.cacheFile;
   streamOptions.cacheBudgetBytes = options.cacheBudgetBytes;
+  streamOptions.network = options.network;
   streamOptions.decodeThreads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 4u));
   auto stream = TileStream::open(streamOptions, wake);
   if (!stream && !options.cacheFile.empty() && stream.error().field == options.cacheFile) {

@@ -13,6 +13,7 @@
 
 #include "client/net/http_link.h"
 #include "client/net/server_url.h"
+#include "client/net/slowed_http_links.h"
 
 namespace terrane {
 
@@ -47,6 +48,7 @@ struct FetchQueue::State {
   State(const FetchOptions& chosen, ServerUrl url)
       : options(chosen), server(std::move(url)), origin(server.origin()), timer(io), work(io.get_executor()) {
     slots.resize(static_cast<std::size_t>(std::clamp(options.connections, 1, kMaxConnections)));
+    if (options.network.simulated()) slowedLinks = std::make_unique<SlowedHttpLinks>(io, options.network);
     thread = std::thread([this] { run(); });
   }
 
@@ -172,6 +174,7 @@ struct FetchQueue::State {
                                                      const std::lock_guard lock(mutex);
                                                      bytesReceived += bytes;
                                                    }});
+      if (slowedLinks) slots[slot].link = slowedLinks->slowed(std::move(slots[slot].link));
       const std::lock_guard lock(mutex);
       ++connects;
     }
@@ -179,7 +182,7 @@ struct FetchQueue::State {
   }
 
   void onAnswer(std::size_t slot, Id id, HttpAnswer answer) {
-    const bool stale = answer.response.status == 0 && !answer.anyByte && slots[slot].link->used() &&
+    const bool stale = answer.response.status == 0 && answer.bytes == 0 && slots[slot].link->used() &&
                        answer.response.error.kind == ErrorKind::Io;
     if (!answer.keep) {
       slots[slot].link->close();
@@ -272,6 +275,7 @@ struct FetchQueue::State {
   net::io_context io{1};
   net::steady_timer timer;
   net::executor_work_guard<net::io_context::executor_type> work;
+  std::unique_ptr<SlowedHttpLinks> slowedLinks;  ///< null: nothing to simulate
   std::vector<Slot> slots;
 
   mutable std::mutex mutex;

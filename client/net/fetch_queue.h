@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "client/net/simulated_link.h"
 #include "common/result.h"
 
 namespace terrane {
@@ -25,6 +26,8 @@ struct FetchOptions {
   std::chrono::milliseconds timeout{30'000};
   std::chrono::milliseconds firstBackoff{250}, longestBackoff{15'000};
   std::size_t maxBodyBytes = 16u << 20;
+  /// A worse network than the real one, to see how that feels. Time limits do not count what it adds.
+  NetworkConditions network = {};
 };
 
 struct FetchResponse {

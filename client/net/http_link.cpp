@@ -89,6 +89,7 @@ class BeastLink final : public HttpLink, public std::enable_shared_from_this<Bea
   }
 
   bool used() const override { return used_; }
+  std::size_t bytesReceived() const override { return answer_.bytes; }
 
   void close() override {
     done_ = nullptr;
@@ -144,7 +145,7 @@ class BeastLink final : public HttpLink, public std::enable_shared_from_this<Bea
     http::async_read_some(stream_, buffer_, *parser_,
                           [self = shared_from_this()](const beast::error_code& code, std::size_t bytes) {
                             if (self->closed_) return;
-                            if (bytes > 0) self->answer_.anyByte = true;
+                            self->answer_.bytes += bytes;
                             self->limits_.received(bytes);
                             if (code) return self->fail(code, "cannot receive");
                             if (!self->parser_->is_done()) return self->read();
@@ -165,7 +166,7 @@ class BeastLink final : public HttpLink, public std::enable_shared_from_this<Bea
   }
 
   void fail(const beast::error_code& code, std::string_view doing) {
-    answer_.anyByte = answer_.anyByte || buffer_.size() > 0;
+    answer_.bytes += buffer_.size();
     answer_.keep = false;
     answer_.response.status = 0;
     answer_.response.error = describe(code, doing);

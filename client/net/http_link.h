@@ -25,8 +25,8 @@ struct HttpLimits {
 
 struct HttpAnswer {
   FetchResponse response;
-  bool anyByte = false;  ///< the server sent something
-  bool keep = false;     ///< the connection may carry another request
+  std::size_t bytes = 0;  ///< came from the server, headers included
+  bool keep = false;      ///< the connection may carry another request
 };
 
 class HttpLink {
@@ -38,6 +38,8 @@ class HttpLink {
   virtual bool cheapToFinish() const = 0;
   /// It has carried an answer before: the server may have closed it since, which says nothing about the server.
   virtual bool used() const = 0;
+  /// What has come of the running request's answer so far, headers included.
+  virtual std::size_t bytesReceived() const = 0;
   virtual void close() = 0;
 };
 

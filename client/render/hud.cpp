@@ -39,6 +39,7 @@ void figureRows(const HudState& s) {
   row("triangles", countText(s.triangles));
   row("edges", s.samples > 1 ? fmt::format("{} samples a pixel", s.samples) : "one sample a pixel");
   row("received", bytesText(s.bytesReceived));
+  if (!s.network.empty()) row("network", s.network);
   row("memory", fmt::format("{} process, {} tiles, {} GPU", bytesText(s.rssBytes), bytesText(s.residentBytes),
                             bytesText(s.gpuBytes)));
   row("placement", s.placement);

@@ -296,6 +296,7 @@ Result<std::unique_ptr<TileStream>> TileStream::open(StreamOptions options, std:
   network.timeout = chosen.requestTimeout;
   network.firstBackoff = chosen.firstBackoff;
   network.longestBackoff = chosen.longestBackoff;
+  network.network = chosen.network;
   auto fetch = FetchQueue::open(network);
   if (!fetch) return fetch.error();
   state->fetch = std::move(*fetch);
@@ -381,6 +382,7 @@ StreamStatus TileStream::status() const {
   status.cancelled = state_->cancelled;
   status.evicted = state_->evicted;
   status.decodeMs = counts.decodeMs;
+  status.network = state_->options.network;
   return status;
 }
 

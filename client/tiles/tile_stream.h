@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "client/net/simulated_link.h"
 #include "common/result.h"
 #include "common/view/tile_selection.h"
 #include "proto/scene_json.h"
@@ -46,6 +47,7 @@ struct StreamOptions {
   std::chrono::milliseconds slowAfter{2'000};  ///< a request that waits longer makes the link Slow
   /// Pauses between attempts double from the one to the other.
   std::chrono::milliseconds firstBackoff{250}, longestBackoff{15'000};
+  NetworkConditions network = {};  ///< to fly under a worse network than the real one
 };
 
 /// Calls of want() for which a tile that is no longer wanted is treated as if it were (or StreamOptions::graceTime).
@@ -59,7 +61,8 @@ struct StreamStatus {
   std::size_t queued = 0, fetching = 0, decoding = 0, ready = 0, resident = 0, failed = 0;
   std::size_t residentBytes = 0;
   std::uint64_t requests = 0, bytesReceived = 0, cacheHits = 0, cancelled = 0, evicted = 0;
-  double decodeMs = 0;  ///< summed over workers
+  double decodeMs = 0;        ///< summed over workers
+  NetworkConditions network;  ///< what is simulated, as asked
 };
 
 /// A decoded tile on its way to the GPU.

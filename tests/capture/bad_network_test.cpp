@@ -1,4 +1,4 @@
-// The viewer when the server is not there, dies, or is no Terrane server.
+// The viewer when the server is not there, dies, is no Terrane server, or is far away.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -111,6 +111,33 @@ TEST(BadNetwork, AnUnknownEffectIsNamedOnceAndNoReasonToStop) {
   EXPECT_NE(outcome.errors.find("warning: the scene has the effect \"aurora\""), std::string::npos) << outcome.errors;
   EXPECT_NE(outcome.errors.find("\"\\x1b[31m\""), std::string::npos) << outcome.errors;
   EXPECT_NE(outcome.errors.find("--body: "), std::string::npos) << outcome.errors;
+}
+
+TEST(BadNetwork, AStreamingFlightOverALongThinLineShowsNoHole) {
+  const RunningServer server("moon");
+  ASSERT_FALSE(server.url.empty()) << server.process->errors();
+  const TemporaryFolder folder;
+  std::ofstream(folder / "f.txt")
+      << "# terrane flight 1\nabove-ground\n0 -16.4 21.6 3000000 0 -90\n10 -16.4 21.6 20 40 -30\n";
+  const std::vector<std::string> flight{"--server", server.url, "--headless",     "--size",
+                                        "320x180",  "--flight", folder / "f.txt", "--step",
+                                        "0.1",      "--stats",  folder / "s.json"};
+  std::vector<std::string> slow = flight;
+  slow.insert(slow.end(), {"--latency", "150", "--bandwidth", "1MB/s"});
+  const auto outcome = runView(slow);
+  std::printf("%s", outcome.output.c_str());
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string json = readFile(folder / "s.json");
+  EXPECT_EQ(jsonNumber(json, "latencyMs"), 150);
+  EXPECT_EQ(jsonNumber(json, "bandwidthBytesPerSecond"), 1e6);
+  EXPECT_EQ(jsonNumber(json, "framesDrawn"), 101);
+  EXPECT_EQ(jsonNumber(json, "framesCounted"), 101);
+  EXPECT_GT(jsonNumber(json, "requests"), 50) << "in ten seconds most of what it asked for has come";
+  EXPECT_EQ(jsonNumber(json, "uncoveredPixels"), 0);
+  EXPECT_EQ(jsonNumber(json, "skirtPixels"), 0);
+  EXPECT_GE(jsonNumber(json, "msToSettle"), 300) << "the scene, then the first tiles: two latencies at least";
+  ASSERT_EQ(runView(flight).status, 0);
+  EXPECT_EQ(readFile(folder / "s.json").find("latencyMs"), std::string::npos) << "a network as it is has no figures";
 }
 
 TEST(BadNetwork, ANonsenseServerUrlIsRefused) {

@@ -91,6 +91,20 @@ TEST(ViewOptions, SizesOfMemoryHaveUnits) {
   EXPECT_EQ(parsed({"--cache-budget", "2097152"}).cacheBudgetBytes, 2097152u);
 }
 
+TEST(ViewOptions, ABadNetworkHasItsUnits) {
+  EXPECT_FALSE(parsed({}).network.simulated());
+  EXPECT_FALSE(parsed({"--latency", "0", "--bandwidth", "0"}).network.simulated());
+  EXPECT_EQ(parsed({"--latency", "10000"}).network.latency, std::chrono::seconds(10));
+  EXPECT_TRUE(parsed({"--latency", "1"}).network.simulated());
+  const std::vector<std::pair<std::string, std::uint64_t>> bandwidths{
+      {"2MB/s", 2'000'000},       {"500KB/s", 500'000}, {"2MiB/s", 2u << 20},           {"1.5KiB/s", 1536},
+      {"1.5GB/s", 1'500'000'000}, {"64000", 64'000},    {"1000GB/s", 1'000'000'000'000}};
+  for (const auto& [text, bytesPerSecond] : bandwidths) {
+    EXPECT_EQ(parsed({"--bandwidth", text}).network.bytesPerSecond, bytesPerSecond) << text;
+    EXPECT_TRUE(parsed({"--bandwidth", text}).network.simulated()) << text;
+  }
+}
+
 TEST(ViewOptions, EveryPlacementHasItsName) {
   for (const char* name : {"integer", "double-float", "cpu", "float32"}) {
     const ViewOptions options = parsed({"--placement", name});
@@ -147,6 +161,17 @@ TEST(ViewOptions, WhatIsWrongIsNamedByItsFlag) {
       {{"--time-limit", "0"}, "--time-limit"},
       {{"--cache-budget", "12 parsecs"}, "--cache-budget"},
       {{"--memory-budget", "1KiB"}, "--memory-budget"},
+      {{"--latency", "-1"}, "--latency"},
+      {{"--latency", "10001"}, "--latency"},
+      {{"--latency", "0.5"}, "--latency"},
+      {{"--latency", "200ms"}, "--latency"},
+      {{"--bandwidth", ""}, "--bandwidth"},
+      {{"--bandwidth", "fast"}, "--bandwidth"},
+      {{"--bandwidth", "-2MB/s"}, "--bandwidth"},
+      {{"--bandwidth", "2MB"}, "--bandwidth"},
+      {{"--bandwidth", "2Mbit/s"}, "--bandwidth"},
+      {{"--bandwidth", "100"}, "--bandwidth"},
+      {{"--bandwidth", "1001GB/s"}, "--bandwidth"},
       {{"--capture", "a-%d.png"}, "--capture"},
       {{"--flight", "orbit", "--capture", "a-%s.png"}, "--capture"},
       {{"--flight", "orbit", "--capture", "%d-%d.png"}, "--capture"},
@@ -191,6 +216,8 @@ TEST(ViewOptions, HelpExplainsEveryFlagAndEveryKey) {
                            "--frames",
                            "--step",
                            "--time-limit",
+                           "--latency",
+                           "--bandwidth",
                            "--explain",
                            "--hud",
                            "--version",
