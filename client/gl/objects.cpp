@@ -135,8 +135,7 @@ void VertexArray::attach(const Buffer& vertices, std::size_t stride, std::span<c
     if (attribute.conversion == Conversion::Integer) {
       glVertexAttribIPointer(attribute.location, attribute.components, glType(attribute.type), glStride, offset);
     } else {
-      const GLboolean normalized = attribute.conversion == Conversion::Normalized ? GL_TRUE : GL_FALSE;
-      glVertexAttribPointer(attribute.location, attribute.components, glType(attribute.type), normalized, glStride,
+      glVertexAttribPointer(attribute.location, attribute.components, glType(attribute.type), GL_FALSE, glStride,
                             offset);
     }
   }

@@ -74,7 +74,7 @@ class BufferWords {
 };
 
 enum class Component : std::uint8_t { U8, U16, I16, I32, F32 };
-enum class Conversion : std::uint8_t { Integer, Normalized, Float };
+enum class Conversion : std::uint8_t { Integer, Float };
 
 struct VertexAttribute {
   unsigned location = 0;

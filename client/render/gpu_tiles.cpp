@@ -25,8 +25,8 @@ constexpr unsigned kPositionLocation = 0, kNormalLocation = 1, kColorLocation = 
 using gl::Component, gl::Conversion;
 constexpr std::array kAttributes{
     gl::VertexAttribute{kPositionLocation, 4, Component::U16, Conversion::Integer, offsetof(GpuVertex, offset)},
-    gl::VertexAttribute{kNormalLocation, 4, Component::I16, Conversion::Normalized, offsetof(GpuVertex, normal)},
-    gl::VertexAttribute{kColorLocation, 4, Component::U8, Conversion::Normalized, offsetof(GpuVertex, color)},
+    gl::VertexAttribute{kNormalLocation, 3, Component::I16, Conversion::Float, offsetof(GpuVertex, normal)},
+    gl::VertexAttribute{kColorLocation, 3, Component::U8, Conversion::Float, offsetof(GpuVertex, color)},
 };
 constexpr std::array kRelativeAttributes{
     gl::VertexAttribute{kRelativeLocation, 3, Component::F32, Conversion::Float, 0},

@@ -27,8 +27,9 @@ inline constexpr double kDisplayGamma = 2.2;
 struct GpuVertex {
   std::array<std::uint16_t, 3> offset{};  ///< steps from the tile's origin
   std::uint16_t skirt = 0;                ///< 1 on a skirt
-  std::array<std::int16_t, 4> normal{};   ///< signed, normalised; the fourth pads
-  std::array<std::uint8_t, 4> color{};    ///< (reflectance / kColorScale)^(1 / kDisplayGamma); the fourth pads
+  std::array<std::int16_t, 4> normal{};   ///< of 32767; the fourth pads
+  /// (reflectance / kColorScale)^(1 / kDisplayGamma), of 255; the fourth pads.
+  std::array<std::uint8_t, 4> color{};
 };
 static_assert(sizeof(GpuVertex) == 20);
 

@@ -49,8 +49,13 @@ Result<TileProgram> TileProgram::build(const TileVariant& variant, const EffectL
   if (variant.morphs) spec.defines.emplace_back("MORPH");
   switch (variant.purpose) {
     case TilePurpose::Shaded:
+    case TilePurpose::Shading:
       spec.vertexFile = "tile.vert.glsl";
-      spec.fragmentFile = "tile.frag.glsl";
+      if (variant.purpose == TilePurpose::Shaded) {
+        spec.fragmentFile = "tile.frag.glsl";
+      } else {
+        spec.feedbackVaryings = {"color", "signedLight"};
+      }
       spec.defines.push_back(fmt::format("DISPLAY_GAMMA {:.4f}", kDisplayGamma));
       for (const auto& effect : effects) spec.defines.emplace_back(effect->define());
       break;
@@ -58,7 +63,7 @@ Result<TileProgram> TileProgram::build(const TileVariant& variant, const EffectL
       spec.vertexFile = "position.vert.glsl";
       spec.fragmentFile = "coverage.frag.glsl";
       break;
-    case TilePurpose::Feedback:
+    case TilePurpose::Positions:
       spec.vertexFile = "position.vert.glsl";
       spec.feedbackVaryings = {"gl_Position"};
       break;
@@ -100,8 +105,8 @@ void TileProgram::begin(const Camera& camera, const EffectList& effects) {
   const DoubleFloat3 position = fromDouble(camera.positionBody);
   setUniform(cameraHigh_, position.hi);
   setUniform(cameraLow_, position.lo);
-  if (variant_.purpose == TilePurpose::Shaded) {
-    setUniform(exposure_, std::pow(kExposure * kColorScale, static_cast<float>(1 / kDisplayGamma)));
+  if (variant_.purpose == TilePurpose::Shaded || variant_.purpose == TilePurpose::Shading) {
+    setUniform(exposure_, std::pow(kExposure * kColorScale, static_cast<float>(1 / kDisplayGamma)) / 255);
     setTint(glm::vec3(1.0f));
     for (const auto& effect : effects) effect->setUniforms(program_);
   }
@@ -133,12 +138,12 @@ void TileProgram::setMorph(const TileDraw& draw) const {
 
 bool TileProgram::place(const TileDraw& draw, std::vector<float>& scratch) {
   if (variant_.morphs) setMorph(draw);
+  const TileMetadata& tile = draw.tile->metadata;
+  placeCamera(tile.stepExponent);
   if (variant_.placement == Placement::Cpu) {
     placeOnCpu(draw, cameraBody_, scratch);
     return true;
   }
-  const TileMetadata& tile = draw.tile->metadata;
-  placeCamera(tile.stepExponent);
   if (variant_.placement == Placement::Integer) {
     const auto difference = originMinusCamera(tile.origin, camera_.steps);
     if (!difference) return false;

@@ -16,11 +16,12 @@
 namespace terrane {
 
 enum class TilePurpose : std::uint8_t {
-  Shaded,    ///< with the scene's effects
-  Coverage,  ///< what covers a pixel
-  Feedback,  ///< clip positions captured, nothing drawn
+  Shaded,     ///< with the scene's effects
+  Coverage,   ///< what covers a pixel
+  Positions,  ///< clip positions captured, nothing drawn
+  Shading,    ///< what Shaded interpolates captured, nothing drawn
 };
-inline constexpr int kTilePurposeCount = 3;
+inline constexpr int kTilePurposeCount = 4;
 inline constexpr int kPlacementCount = 4;
 
 using EffectList = std::vector<std::unique_ptr<const Effect>>;

@@ -185,6 +185,26 @@ struct TileRenderer::State {
     if (!unreachable.empty()) forEachTile(camera, unreachable, Placement::Cpu, purpose, drawTile);
   }
 
+  /// What the vertex shader gives for each of a tile's vertices: four floats.
+  std::vector<float> captured(const Camera& camera, const DrawnTile& tile, Placement placement, TilePurpose purpose) {
+    const auto draw = makeTileDraw(tiles, tile, false, capabilities.bufferWords);
+    if (!draw) return {};
+    std::vector<float> values(4 * draw->tile->vertexCount);
+    gl::Buffer feedback;
+    feedback.allocate(gl::BufferTarget::Feedback, values.size() * sizeof(float), gl::BufferUse::ReadBack);
+    feedback.bindForFeedback();
+    glEnable(GL_RASTERIZER_DISCARD);
+    forEachTile(camera, std::array{*draw}, placement, purpose, [](const TileProgram&, const TileDraw& placed) {
+      glBeginTransformFeedback(GL_POINTS);
+      glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(placed.tile->vertexCount));
+      glEndTransformFeedback();
+    });
+    glDisable(GL_RASTERIZER_DISCARD);
+    gl::VertexArray::unbind();
+    feedback.read(0, std::as_writable_bytes(std::span(values)));
+    return values;
+  }
+
   DrawStats drawTiles(const Camera& camera, std::span<const DrawnTile> list, const DrawSettings& settings,
                       Placement placement) {
     DrawStats stats;
@@ -287,23 +307,11 @@ CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const 
 }
 
 std::vector<float> TileRenderer::clipPositions(const Camera& camera, const DrawnTile& tile, Placement placement) {
-  const auto draw = makeTileDraw(state_->tiles, tile, false, state_->capabilities.bufferWords);
-  if (!draw) return {};
-  std::vector<float> positions(4 * draw->tile->vertexCount);
-  gl::Buffer captured;
-  captured.allocate(gl::BufferTarget::Feedback, positions.size() * sizeof(float), gl::BufferUse::ReadBack);
-  captured.bindForFeedback();
-  glEnable(GL_RASTERIZER_DISCARD);
-  state_->forEachTile(camera, std::array{*draw}, usable(placement), TilePurpose::Feedback,
-                      [](const TileProgram&, const TileDraw& placed) {
-                        glBeginTransformFeedback(GL_POINTS);
-                        glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(placed.tile->vertexCount));
-                        glEndTransformFeedback();
-                      });
-  glDisable(GL_RASTERIZER_DISCARD);
-  gl::VertexArray::unbind();
-  captured.read(0, std::as_writable_bytes(std::span(positions)));
-  return positions;
+  return state_->captured(camera, tile, usable(placement), TilePurpose::Positions);
+}
+
+std::vector<float> TileRenderer::colorsAndLight(const Camera& camera, const DrawnTile& tile, Placement placement) {
+  return state_->captured(camera, tile, usable(placement), TilePurpose::Shading);
 }
 
 }  // namespace terrane

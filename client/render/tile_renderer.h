@@ -89,6 +89,9 @@ class TileRenderer {
   /// Clip-space positions (x, y, z, w) of a tile's vertices as the vertex shader computes them, by transform feedback,
   /// a complete grid's in grid order; for the tests of placement against a reference of higher precision.
   std::vector<float> clipPositions(const Camera& camera, const DrawnTile& tile, Placement placement);
+  /// In the same way what the shaded vertex shader hands on to be interpolated: colour (r, g, b) and signed light.
+  /// Needs the effect sun.
+  std::vector<float> colorsAndLight(const Camera& camera, const DrawnTile& tile, Placement placement);
 
   std::size_t gpuBytes() const noexcept;
 

@@ -28,15 +28,19 @@ ivec3 parentOffset(int vertex) {
   return ivec3(int(xy & 65535u), int(xy >> 16), int(parentWord(vertex + 1) & 65535u));
 }
 
+// Normals and colours as whole numbers, as the parent's own draw has them.
 vec3 parentNormal(int vertex) {
   int xy = int(parentWord(vertex + 2)), z = int(parentWord(vertex + 3));
-  return max(vec3((xy << 16) >> 16, xy >> 16, (z << 16) >> 16) / 32767.0, -1.0);
+  return vec3((xy << 16) >> 16, xy >> 16, (z << 16) >> 16);
 }
 
 vec3 parentColor(int vertex) {
   uint rgb = parentWord(vertex + 4);
-  return vec3(rgb & 255u, (rgb >> 8) & 255u, (rgb >> 16) & 255u) / 255.0;
+  return vec3(rgb & 255u, (rgb >> 8) & 255u, (rgb >> 16) & 255u);
 }
+
+// From the middle between the two vertices of the parent to the first, in steps of the tile. Exact.
+ivec3 stepsToFirst(MorphedVertex vertex) { return parentOffset(vertex.first) - parentOffset(vertex.second); }
 
 // In steps of the tile, from an offset in it to the point of the parent's mesh. Exact.
 ivec3 stepsToParent(MorphedVertex vertex, ivec3 offsetSteps) {

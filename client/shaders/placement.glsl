@@ -6,6 +6,8 @@
 #include "morph.glsl"
 #endif
 
+uniform float stepMeters;  // a power of two: multiplying by it is exact
+
 #ifdef PLACEMENT_CPU
 layout(location = 3) in vec3 vertexRelative;
 
@@ -15,7 +17,6 @@ vec3 morphedPosition(MorphedVertex vertex) { return vertexRelative; }
 #endif
 #else
 layout(location = 0) in uvec4 vertexOffset;  // x, y, z in steps from the tile's origin; w is not 0 on a skirt
-uniform float stepMeters;                    // a power of two: multiplying by it is exact
 
 #ifdef PLACEMENT_INTEGER
 #include "relative_position.glsl"

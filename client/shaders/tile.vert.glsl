@@ -3,8 +3,8 @@
 #include "placement.glsl"
 #include "projection.glsl"
 
-layout(location = 1) in vec4 vertexNormal;
-layout(location = 2) in vec4 vertexColor;  // (reflectance / kColorScale)^(1 / DISPLAY_GAMMA)
+layout(location = 1) in vec3 vertexNormal;  // of 32767
+layout(location = 2) in vec3 vertexColor;   // of 255: (reflectance / kColorScale)^(1 / DISPLAY_GAMMA)
 
 uniform float exposure;  // light on the display per unit of light that soil of reflectance kColorScale sends back, on the same curve
 uniform vec3 tint;
@@ -12,6 +12,11 @@ uniform vec3 tint;
 #ifdef EFFECT_SUN
 #include "sun.glsl"
 out float signedLight;
+
+float lightAt(vec3 relative, vec3 normal) {
+  PRECISE float light = signedSunlight(normal / 32767.0, -normalize(relative));
+  return light;
+}
 #endif
 
 out vec3 color;  // as the display wants it, in full light
@@ -19,25 +24,26 @@ invariant gl_Position;
 
 void main() {
 #ifdef MORPH
+  // All the way at its parent a vertex has what the parent's own draw has there: on a vertex its bits, between two the middle of what it
+  // interpolates, which is light as each of the two shows it, not normals.
   MorphedVertex vertex = morphedVertex();
   vec3 relative = morphedPosition(vertex);
+  vec3 parents = 0.5 * (parentColor(vertex.first) + parentColor(vertex.second));
+  PRECISE vec3 shown = vertexColor * (1.0 - vertex.morph) + parents * vertex.morph;
 #else
   vec3 relative = relativePosition();
+  vec3 shown = vertexColor;
 #endif
   gl_Position = clipPosition(relative);
-  vec3 ownColor = vertexColor.rgb;
 #ifdef EFFECT_SUN
-  vec3 towardsEye = -normalize(relative);
-  signedLight = signedSunlight(vertexNormal.xyz, towardsEye);
-#endif
+  signedLight = lightAt(relative, vertexNormal);
 #ifdef MORPH
-  // As the parent looks there: between its vertices it interpolates light and colour, not normals.
-  ownColor = mix(ownColor, 0.5 * (parentColor(vertex.first) + parentColor(vertex.second)), vertex.morph);
-#ifdef EFFECT_SUN
-  float parentLight =
-      0.5 * (signedSunlight(parentNormal(vertex.first), towardsEye) + signedSunlight(parentNormal(vertex.second), towardsEye));
-  signedLight = mix(signedLight, parentLight, vertex.morph);
+  vec3 toFirst = vec3(stepsToFirst(vertex)) * stepMeters;
+  PRECISE float parentLight =
+      0.5 * (lightAt(relative + toFirst, parentNormal(vertex.first)) + lightAt(relative - toFirst, parentNormal(vertex.second)));
+  signedLight = vertex.morph == 1.0 ? parentLight : mix(signedLight, parentLight, vertex.morph);
 #endif
 #endif
-  color = ownColor * exposure * tint;
+  PRECISE vec3 scaled = shown * (exposure * tint);
+  color = scaled;
 }

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +14,7 @@
 #include "client/render/morph_grid.h"
 #include "proto/gltf_tile.h"
 #include "tests/capture/gl_fixture.h"
+#include "tests/capture/parent_tiles.h"
 #include "tests/capture/stitched_tiles.h"
 
 namespace terrane {
@@ -50,36 +50,11 @@ class MorphTest : public GlTest {
   }
 };
 
-/// Parents in turn of every level from 0 to 23, a third each at an edge, at a corner and inside of a face.
-FacePath parentOf(std::mt19937_64& random, int round) {
-  const int level = round % 24, kind = round / 24 % 3;
-  const auto last = static_cast<std::uint32_t>((std::uint64_t{1} << level) - 1);
-  const auto inside = [&] { return static_cast<std::uint32_t>(random() & last); };
-  const auto border = [&] { return random() % 2 == 0 ? 0 : last; };
-  const std::uint32_t column = kind == 0 ? inside() : border(), row = kind == 2 ? border() : inside();
-  return FacePath::cubeTile(static_cast<int>(random() % 6), level, column, row);
-}
-
-LatticePoint latticePoint(const Tile& tile, int i, int j) {
-  const auto at = 3 * static_cast<std::size_t>(j * kSide + i);
-  const auto& offsets = tile.mesh.offsets;
-  return tile.metadata.origin + LatticePoint(offsets[at], offsets[at + 1], offsets[at + 2]);
-}
-
-/// Twice the point of the parent's mesh at half-cell (x, y), from the triangle that it lies in.
-LatticePoint twiceMeshPoint(const Tile& parent, int x, int y) {
-  const int i = std::min(x / 2, kCells - 1), j = std::min(y / 2, kCells - 1), u = x - 2 * i, v = y - 2 * j;
-  const LatticePoint v00 = latticePoint(parent, i, j), v11 = latticePoint(parent, i + 1, j + 1);
-  const LatticePoint third = u >= v ? latticePoint(parent, i + 1, j) : latticePoint(parent, i, j + 1);
-  const std::int64_t most = std::max(u, v), least = std::min(u, v);
-  return v00 * (2 - most) + third * (most - least) + v11 * least;
-}
-
 TEST_F(MorphTest, EveryVertexMovesToAPointOfTheParentsMesh) {
   std::mt19937_64 random(kSeed);
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
   std::size_t moved = 0, compared = 0;
-  for (int round = 0; round < 24; ++round) {
+  for (int round = 0; round < kParentLevels; ++round) {
     const TilePointer parent = built(parentOf(random, round));
     for (int digit = 0; digit < 4; ++digit) {
       const TilePointer child = built(parent->metadata.path.child(digit));
@@ -120,78 +95,6 @@ TEST(MorphGrid, RefusesWhatDoesNotFit) {
   EXPECT_FALSE(morphGrid(tile, other));
   parent.cellsPerEdge = tile.cellsPerEdge = 33;
   EXPECT_FALSE(morphGrid(tile, parent)) << "an odd number of cells has no middle";
-}
-
-struct Differences {
-  std::size_t even = 0, evenDiffering = 0, odd = 0;
-  double worst = 0;  ///< of odd vertices from the exact midpoint, in units of 2^-24 of their distance
-};
-
-/// A fully morphed child's captured vertices against those of its parent.
-void compareToParent(TileRenderer& renderer, const Camera& camera, const Tile& child, const Tile& parent,
-                     Placement placement, Differences& found) {
-  const auto grid = morphGrid(child.metadata, parent.metadata);
-  ASSERT_TRUE(grid);
-  const auto own = renderer.clipPositions(camera, {child.metadata.path, morphedBy(1)}, placement),
-             parents = renderer.clipPositions(camera, {parent.metadata.path, {}}, placement);
-  const glm::dmat4 projection = reversedInfiniteProjection(camera);
-  const double step = stepMeters(child.metadata.stepExponent);
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const ParentVertices to = grid->parentVertices(i, j);
-      const auto at = 4 * static_cast<std::size_t>(j * kSide + i), there = 4 * static_cast<std::size_t>(to.first);
-      if (to.first == to.second) {
-        ++found.even;
-        for (std::size_t c = 0; c < 4; ++c) {
-          if (std::bit_cast<std::uint32_t>(own[at + c]) == std::bit_cast<std::uint32_t>(parents[there + c])) continue;
-          ++found.evenDiffering;
-          break;
-        }
-        continue;
-      }
-      ++found.odd;
-      const LatticePoint target = twiceMeshPoint(parent, 2 * grid->firstColumn + i, 2 * grid->firstRow + j);
-      const glm::dvec3 relative = glm::dvec3(target) * step - camera.positionBody;
-      const double distance = glm::length(relative) + 1000 * step;  // and the way that it moved
-      const glm::dvec3 clip(projection[0][0] * glm::dot(camera.right, relative),
-                            projection[1][1] * glm::dot(camera.up, relative), -glm::dot(camera.backward, relative));
-      const glm::dvec3 computed(own[at], own[at + 1], own[at + 3]);
-      found.worst = std::max(found.worst, glm::length(computed - clip) / (distance * 0x1p-24));
-    }
-  }
-}
-
-std::size_t childrenToCompare() {
-  const char* value = std::getenv("TERRANE_MORPH_TILES");  // NOLINT(concurrency-mt-unsafe): one thread
-  return value == nullptr ? 200 : std::strtoull(value, nullptr, 10);
-}
-
-TEST_F(MorphTest, FullyMorphedChildrenGiveTheirParentsBits) {
-  std::mt19937_64 random(kSeed);
-  std::printf("seed %llu, %zu children\n", static_cast<unsigned long long>(kSeed), childrenToCompare());
-  auto renderer = makeRenderer();
-  std::array<Differences, 3> found;
-  for (std::size_t round = 0; 4 * round < childrenToCompare(); ++round) {
-    const TilePointer parent = built(parentOf(random, static_cast<int>(round)));
-    const double widths = std::ldexp(1.0, static_cast<int>(random() % 8) - 5);
-    const Camera camera = cameraOver(*parent, widths);
-    renderer->clear();
-    renderer->upload(parent);
-    for (int digit = 0; digit < 4; ++digit) {
-      const TilePointer child = built(parent->metadata.path.child(digit));
-      renderer->upload(child);
-      for (const Placement placement : {Placement::Integer, Placement::DoubleFloat, Placement::Cpu})
-        compareToParent(*renderer, camera, *child, *parent, placement, found[static_cast<std::size_t>(placement)]);
-    }
-  }
-  for (const Placement placement : {Placement::Integer, Placement::DoubleFloat, Placement::Cpu}) {
-    const Differences& of = found[static_cast<std::size_t>(placement)];
-    std::printf("%s: %zu of %zu even vertices differ; %zu odd ones off by at most %.2f u\n",
-                std::string(placementName(placement)).c_str(), of.evenDiffering, of.even, of.odd, of.worst);
-    EXPECT_EQ(of.evenDiffering, 0u) << placementName(placement);
-    EXPECT_LE(of.worst, 16) << placementName(placement);
-    EXPECT_GT(of.odd, 2 * of.even);
-  }
 }
 
 TEST_F(MorphTest, AVertexThatDoesNotMorphKeepsItsBitsInATileThatDoes) {
