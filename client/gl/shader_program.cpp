@@ -74,8 +74,10 @@ Result<Program> Program::build(const ProgramSpec& spec, const Capabilities& capa
   if (!vertex) return vertex.error();
   glAttachShader(program.id(), vertex->id());
   Handle<ObjectKind::Shader> fragment;
-  if (!spec.fragmentFile.empty()) {
-    auto compiled = compile(GL_FRAGMENT_SHADER, spec.fragmentFile, shaderSource(spec.fragmentFile), head);
+  if (!spec.fragmentFile.empty() || !spec.fragmentText.empty()) {
+    const bool isFile = spec.fragmentText.empty();
+    auto compiled = compile(GL_FRAGMENT_SHADER, isFile ? spec.fragmentFile : "fragment shader",
+                            isFile ? shaderSource(spec.fragmentFile) : spec.fragmentText, head);
     if (!compiled) return compiled.error();
     fragment = std::move(*compiled);
     glAttachShader(program.id(), fragment.id());
@@ -111,6 +113,13 @@ void setUniform(Uniform uniform, const glm::ivec3& value) { glUniform3iv(uniform
 void setUniform(Uniform uniform, std::span<const float> values) {
   glUniform1fv(uniform.location, static_cast<GLsizei>(values.size()), values.data());
 }
+void setUniform(Uniform uniform, std::span<const glm::vec4> values) {
+  glUniform4fv(uniform.location, static_cast<GLsizei>(values.size()), &values.data()->x);
+}
+void setUniform(Uniform uniform, std::span<const glm::ivec3> values) {
+  glUniform3iv(uniform.location, static_cast<GLsizei>(values.size()), &values.data()->x);
+}
+void setUniform(Uniform uniform, int value) { glUniform1i(uniform.location, value); }
 void setUniform(Uniform uniform, const glm::mat3& value) {
   glUniformMatrix3fv(uniform.location, 1, GL_FALSE, glm::value_ptr(value));
 }

@@ -28,7 +28,8 @@ struct Uniform {
 struct ProgramSpec {
   std::string_view vertexFile = {};
   std::string_view vertexText = {};                ///< in place of a file; may include files
-  std::string_view fragmentFile = {};              ///< empty: vertices only (transform feedback)
+  std::string_view fragmentFile = {};              ///< empty, as its text: vertices only (transform feedback)
+  std::string_view fragmentText = {};              ///< in place of a file; may include files
   std::vector<std::string> defines = {};           ///< "NAME" or "NAME value"
   std::vector<const char*> feedbackVaryings = {};  ///< captured, interleaved
 };
@@ -54,6 +55,10 @@ void setUniform(Uniform uniform, const glm::vec3& value);
 void setUniform(Uniform uniform, const glm::vec4& value);
 void setUniform(Uniform uniform, const glm::ivec3& value);
 void setUniform(Uniform uniform, const glm::mat3& value);
-void setUniform(Uniform uniform, std::span<const float> values);  ///< an array
+void setUniform(Uniform uniform, int value);
+/// Arrays.
+void setUniform(Uniform uniform, std::span<const float> values);
+void setUniform(Uniform uniform, std::span<const glm::vec4> values);
+void setUniform(Uniform uniform, std::span<const glm::ivec3> values);
 
 }  // namespace terrane::gl

@@ -7,24 +7,33 @@
 namespace terrane {
 namespace {
 
-using Factory = std::unique_ptr<const Effect> (*)(const ParameterValues&);
+using Factory = std::unique_ptr<const Effect> (*)(const EffectCall&);
 
 // In the order of EffectKind; an effect of the server has none.
-constexpr std::array<Factory, kEffectKindCount> kFactories{&makeSunEffect};
+constexpr std::array<Factory, kEffectKindCount> kFactories{&makeSunEffect, &makeDetailEffect};
 static_assert(std::ranges::none_of(kFactories, [](Factory factory) { return factory == nullptr; }),
               "every kind of effect has its factory");
 
 }  // namespace
 
-std::vector<std::unique_ptr<const Effect>> makeEffects(const std::vector<EffectCall>& calls) {
-  std::vector<std::unique_ptr<const Effect>> effects;
-  for (const EffectCall& call : calls) {
-    const EffectRow& row = effectRow(call.kind);
+EffectList makeEffects(const std::vector<EffectCall>& calls) {
+  EffectList effects;
+  for (const EffectRow& row : effectTable()) {
     if (row.side != EffectSide::Client) continue;
-    effects.push_back(kFactories[static_cast<std::size_t>(call.kind)](call.parameters));
-    countConstruction("effect." + std::string(row.name));
+    for (const EffectCall& call : calls) {
+      if (call.kind != row.kind) continue;
+      effects.push_back(kFactories[static_cast<std::size_t>(call.kind)](call));
+      countConstruction("effect." + std::string(row.name));
+    }
   }
   return effects;
+}
+
+std::vector<std::string> definesOf(const EffectList& effects) {
+  std::vector<std::string> defines;
+  for (const auto& effect : effects)
+    if (!effect->define().empty()) defines.emplace_back(effect->define());
+  return defines;
 }
 
 }  // namespace terrane

@@ -7,18 +7,10 @@
 namespace terrane {
 namespace {
 
-/// A setting, or the table's default where a scene was made by hand.
-double setting(const ParameterValues& values, std::string_view name) {
-  if (const auto found = values.find(name); found != values.end()) return found->second;
-  for (const ParameterSpec& spec : effectRow(EffectKind::Sun).parameters)
-    if (spec.name == name) return spec.defaultValue;
-  return 0;
-}
-
 class SunEffect final : public Effect {
  public:
-  explicit SunEffect(const ParameterValues& values) : ambient_(static_cast<float>(setting(values, "ambient"))) {
-    const double longitude = setting(values, "longitude"), latitude = setting(values, "latitude");
+  explicit SunEffect(const EffectCall& call) : ambient_(static_cast<float>(effectSetting(call, "ambient"))) {
+    const double longitude = effectSetting(call, "longitude"), latitude = effectSetting(call, "latitude");
     towardsSun_ = glm::vec3(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
                             std::sin(latitude));
   }
@@ -37,8 +29,6 @@ class SunEffect final : public Effect {
 
 }  // namespace
 
-std::unique_ptr<const Effect> makeSunEffect(const ParameterValues& parameters) {
-  return std::make_unique<SunEffect>(parameters);
-}
+std::unique_ptr<const Effect> makeSunEffect(const EffectCall& call) { return std::make_unique<SunEffect>(call); }
 
 }  // namespace terrane

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
+#include "client/render/clip_rows.h"
 #include "common/numerics/double_float3.h"
 
 namespace terrane {
@@ -28,18 +31,6 @@ const char* placementDefine(Placement placement) {
   return "PLACEMENT_CPU";
 }
 
-/// Rows x, y and w of projection * rotation. The z row is the constant near plane.
-glm::mat3 clipRows(const Camera& camera) {
-  const glm::dmat4 projection = reversedInfiniteProjection(camera);
-  const glm::dmat3 rotation = viewRotation(camera);
-  glm::mat3 rows(0.0f);
-  for (int column = 0; column < 3; ++column) {
-    rows[column] = glm::vec3(projection[0][0] * rotation[column][0], projection[1][1] * rotation[column][1],
-                             projection[2][3] * rotation[column][2]);
-  }
-  return rows;
-}
-
 }  // namespace
 
 Result<TileProgram> TileProgram::build(const TileVariant& variant, const EffectList& effects,
@@ -57,7 +48,7 @@ Result<TileProgram> TileProgram::build(const TileVariant& variant, const EffectL
         spec.feedbackVaryings = {"color", "signedLight"};
       }
       spec.defines.push_back(fmt::format("DISPLAY_GAMMA {:.4f}", kDisplayGamma));
-      for (const auto& effect : effects) spec.defines.emplace_back(effect->define());
+      std::ranges::move(definesOf(effects), std::back_inserter(spec.defines));
       break;
     case TilePurpose::Coverage:
       spec.vertexFile = "position.vert.glsl";
@@ -100,7 +91,7 @@ void TileProgram::begin(const Camera& camera, const EffectList& effects) {
   program_.use();
   cameraBody_ = camera.positionBody;
   stepExponent_.reset();
-  setUniform(clipRows_, clipRows(camera));
+  setUniform(clipRows_, glm::mat3(clipRows(camera)));
   setUniform(nearMeters_, static_cast<float>(camera.nearMeters));
   const DoubleFloat3 position = fromDouble(camera.positionBody);
   setUniform(cameraHigh_, position.hi);

@@ -24,8 +24,6 @@ enum class TilePurpose : std::uint8_t {
 inline constexpr int kTilePurposeCount = 4;
 inline constexpr int kPlacementCount = 4;
 
-using EffectList = std::vector<std::unique_ptr<const Effect>>;
-
 struct TileVariant {
   Placement placement = Placement::Integer;
   TilePurpose purpose = TilePurpose::Shaded;

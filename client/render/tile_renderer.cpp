@@ -103,6 +103,7 @@ struct TileRenderer::State {
   gl::Capabilities capabilities;
   SelfTestReport selfTest;
   EffectList effects;
+  std::vector<std::unique_ptr<EffectPass>> passes;
   GpuTiles tiles;
   std::array<std::optional<TileProgram>, std::size_t{2} * kTilePurposeCount * kPlacementCount> programs;
   std::optional<RenderTarget> windowTarget, coverageTarget;
@@ -231,6 +232,11 @@ Result<std::unique_ptr<TileRenderer>> TileRenderer::create(const std::vector<Eff
   if (!report) return report.error();
   state->selfTest = *report;
   state->effects = makeEffects(effects);
+  for (const auto& effect : state->effects) {
+    auto pass = effect->makePass(state->effects, state->capabilities);
+    if (!pass) return pass.error();
+    if (*pass) state->passes.push_back(std::move(*pass));
+  }
   if (auto program = state->program({state->selfTest.chosen, TilePurpose::Shaded, false}); !program)
     return program.error();
   return std::unique_ptr<TileRenderer>(new TileRenderer(std::move(state)));
@@ -262,7 +268,7 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const DrawnTile> ti
   const Placement placement = usable(settings.placement);
   GLint framebuffer = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
-  if (framebuffer != 0) {
+  if (framebuffer != 0 && state_->passes.empty()) {
     glViewport(0, 0, camera.widthPixels, camera.heightPixels);
     return state_->drawTiles(camera, tiles, settings, placement);
   }
@@ -270,7 +276,8 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const DrawnTile> ti
   if (!provide(target, camera, TargetFormat::Rgba8, settings.samples)) return {};
   target->bind();
   const DrawStats stats = state_->drawTiles(camera, tiles, settings, placement);
-  target->blitToWindow(camera.widthPixels, camera.heightPixels);
+  for (const auto& pass : state_->passes) pass->draw({camera, *target, state_->effects});
+  target->blitTo(static_cast<unsigned>(framebuffer), camera.widthPixels, camera.heightPixels);
   return stats;
 }
 

@@ -74,8 +74,8 @@ class TileRenderer {
 
   /// Draws into the current framebuffer (colour and depth cleared here). Tiles that were never uploaded are skipped;
   /// one that morphs needs its parent uploaded, or it is drawn as it is. The window's own framebuffer lacks the depth
-  /// precision: with that bound, draws into a RenderTarget of the camera's size and copies it over (the camera then has
-  /// the window's size).
+  /// precision, and effects with passes of their own read the depth: then draws into a RenderTarget of the camera's
+  /// size and copies it over (what is bound then has the camera's size and one sample a pixel).
   DrawStats draw(const Camera& camera, std::span<const DrawnTile> tiles, const DrawSettings& settings);
   /// The tiles as they are.
   DrawStats draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings);

@@ -18,11 +18,22 @@ constexpr std::array kSunParameters{
     ParameterSpec{"ambient", Quantity::Number, 0, 1, 0.02, "light that reaches the shade, as a part of full sunlight"},
 };
 
+constexpr std::array kDetailParameters{
+    ParameterSpec{"relief", Quantity::Number, 0, 1, 0.14, "slope of the relief of a metre's wavelength"},
+    ParameterSpec{"hurst", Quantity::Number, 0, 1, 0.9,
+                  "how slopes fall with the wavelength, as its power of hurst - 1"},
+    ParameterSpec{"mottle", Quantity::Number, 0, 1, 0.05, "how much reflectance varies, as a share, in each octave"},
+};
+
 // In the order of EffectKind.
 constexpr std::array kEffects{
     EffectRow{EffectKind::Sun, "sun", "sunlight from one direction, with a night side", "surface normals of the tiles",
               "one dot product a vertex and one power a pixel; no pass, texture or buffer of its own",
               EffectSide::Client, kSunParameters},
+    EffectRow{EffectKind::Detail, "detail", "relief and mottling of the ground finer than its mesh, at every scale",
+              "the depth of the ground as a texture; the sun, or it only mottles",
+              "one pass over the picture: three octaves of noise a pixel, whatever the number of triangles",
+              EffectSide::Client, kDetailParameters},
 };
 static_assert(kEffects.size() == kEffectKindCount, "every kind of effect has its row");
 static_assert(
@@ -53,6 +64,13 @@ std::optional<EffectKind> findEffect(std::string_view name) noexcept {
   const auto row = std::ranges::find(kEffects, name, &EffectRow::name);
   if (row == kEffects.end()) return std::nullopt;
   return row->kind;
+}
+
+double effectSetting(const EffectCall& call, std::string_view name) {
+  if (const auto found = call.parameters.find(name); found != call.parameters.end()) return found->second;
+  const auto schema = effectRow(call.kind).parameters;
+  const auto spec = std::ranges::find(schema, name, &ParameterSpec::name);
+  return spec == schema.end() ? 0 : spec->defaultValue;
 }
 
 void countConstruction(std::string_view name) {

@@ -17,8 +17,8 @@
 
 namespace terrane {
 
-enum class EffectKind : std::uint8_t { Sun };
-inline constexpr int kEffectKindCount = 1;
+enum class EffectKind : std::uint8_t { Sun, Detail };
+inline constexpr int kEffectKindCount = 2;
 
 enum class EffectSide : std::uint8_t { Client, Server };
 
@@ -41,6 +41,8 @@ struct EffectCall {
   EffectKind kind;
   ParameterValues parameters;
 };
+/// A setting of an effect, or the table's default where a scene was made by hand. Precondition: the table has it.
+double effectSetting(const EffectCall& call, std::string_view name);
 
 /// Counts what was constructed, by name ("effect.sun", "field.lunar"): what --explain prints and the tests assert.
 /// Process-wide and thread-safe, as metrics are.

@@ -1,0 +1,33 @@
+// The ground that a pixel shows, relative to the camera, body axes, metres, from the depth that the tiles left: near / w, 0 where there is
+// none. A float holds that depth to 2^-24 of itself at any distance, so a point lies within 2^-23 of its distance along its own ray.
+#ifdef MULTISAMPLED
+uniform sampler2DMS groundDepth;  // its first sample stands for the pixel
+#else
+uniform sampler2D groundDepth;
+#endif
+uniform mat3 rays;           // from (x, y, 1), the screen being -1..1, to the point one metre ahead of the camera
+uniform vec2 pictureSize;    // pixels
+uniform float nearMeters;
+
+float depthAt(vec2 pixelCentre) {
+  bool inside = all(greaterThan(pixelCentre, vec2(0.0))) && all(lessThan(pixelCentre, pictureSize));
+  return inside ? texelFetch(groundDepth, ivec2(pixelCentre), 0).r : 0.0;
+}
+
+vec3 groundRelative(vec2 pixelCentre, float depth) {
+  // Sky: so far away that nothing can be told of it, but finite.
+  return rays * vec3(pixelCentre * (2.0 / pictureSize) - 1.0, 1.0) * (nearMeters / max(depth, 1e-30));
+}
+
+// The square of the way on the ground to the next pixel on the axis, on the side where it is shorter: beyond an edge of what is seen lies
+// something else.
+float wayToNextSquared(vec2 pixelCentre, vec2 axis, vec3 here) {
+  vec3 after = groundRelative(pixelCentre + axis, depthAt(pixelCentre + axis)) - here;
+  vec3 before = groundRelative(pixelCentre - axis, depthAt(pixelCentre - axis)) - here;
+  return min(dot(after, after), dot(before, before));
+}
+
+// How long a pixel is on the ground, metres, the way in which it is longer.
+float footprintMeters(vec2 pixelCentre, vec3 here) {
+  return sqrt(max(wayToNextSquared(pixelCentre, vec2(1.0, 0.0), here), wayToNextSquared(pixelCentre, vec2(0.0, 1.0), here)));
+}
