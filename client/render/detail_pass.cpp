@@ -72,6 +72,7 @@ void DetailPass::draw(const GroundPicture& picture) {
   setGroundPosition(*program, picture);
   setDetailOctaves(*program, picture.camera);
   setUniform(program->uniform("cameraBody"), glm::vec3(picture.camera.positionBody));
+  setUniform(program->uniform("finestPixels"), strength_.finestPixels);
   setUniform(program->uniform("firstExponent"), kFinestDetailExponent);
   setUniform(program->uniform("octaveSlopes"), strength_.slopes);
   setUniform(program->uniform("octaveMottles"), strength_.mottles);

@@ -23,6 +23,8 @@ inline constexpr int kFinestDetailExponent = -13, kDetailOctaves = 32;
 struct DetailStrength {
   std::array<float, kDetailOctaves> slopes{};   ///< of the relief
   std::array<float, kDetailOctaves> mottles{};  ///< of the reflectance, a share
+  /// The shortest wavelength that is shown, fading in up to twice that. Below two pixels it would shimmer.
+  float finestPixels = 2.5f;
 };
 
 class DetailPass final : public EffectPass {

@@ -8,20 +8,20 @@
 uniform vec3 towardsSun;
 #endif
 uniform vec3 cameraBody;                     // float is enough for the direction up
+uniform float finestPixels;                 // a wavelength below is not shown
 uniform int firstExponent;                   // octave 0 has a wavelength of 2^firstExponent metres
 uniform float octaveSlopes[OCTAVE_COUNT];    // of its relief
 uniform float octaveMottles[OCTAVE_COUNT];   // of its reflectance, a share
 
 layout(location = 0) out vec4 halfFactor;  // blended as 2 x this x what is there
 
-const float kFinestPixels = 2.5;  // a wavelength below is not shown
 const int kOctavesShown = 3;
 
 void main() {
   float depth = depthAt(gl_FragCoord.xy);
   if (depth <= 0.0) discard;
   vec3 relative = groundRelative(gl_FragCoord.xy, depth);
-  float scale = log2(footprintMeters(gl_FragCoord.xy, relative) * kFinestPixels) - float(firstExponent);
+  float scale = log2(footprintMeters(gl_FragCoord.xy, relative) * finestPixels) - float(firstExponent);
   if (!(scale < float(OCTAVE_COUNT))) discard;
 
   int finest = max(int(floor(scale)) + 1, 0);

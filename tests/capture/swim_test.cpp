@@ -15,7 +15,7 @@ namespace {
 
 int frameCount() {
   const char* text = std::getenv("TERRANE_SWIM_FRAMES");
-  return text == nullptr ? 60 : std::atoi(text);
+  return text == nullptr ? 30 : std::atoi(text);
 }
 
 class SwimMeter : public GlTest {};
@@ -25,7 +25,7 @@ TEST_F(SwimMeter, ATexelStaysWithinATwentiethOfAPixelOfItsPlaceFromHalfAMetreToO
     test::SwimSettings settings{.heightMeters = height, .frames = frameCount()};
     const test::Swim swim = require(test::measureSwim(moon(), settings));
     settings.coordinates = test::TextureCoordinates::Float32;
-    settings.frames = 20;
+    settings.frames = 10;
     const test::Swim control = require(test::measureSwim(moon(), settings));
     std::printf(
         "%g m: %d frames, %d level changes, wavelength %g m: worst %.5f, median %.5f pixels; float32 worst %.4g, "
