@@ -27,6 +27,9 @@ using Clock = std::chrono::steady_clock;
 // Small enough that one batch does not overrun a frame's time by much.
 constexpr std::size_t kUploadBatchBytes = 512u << 10;
 constexpr int kLevelsAheadOfGround = 2;
+/// From higher up other tiles are wanted. That begins to change what is drawn and not where its surface is, so once is
+/// enough, but for a tile that comes into view under the camera.
+constexpr int kMostRises = 3;
 
 /// Decoding many tiles leaves tens of megabytes free in the heap; nobody needs them while the view stands still.
 void returnFreedMemory() {
@@ -68,9 +71,10 @@ struct ViewSession::State {
   void nameUnknownEffects();
   bool takeArrivals(const UploadBudget& budget);
   ViewPose resolved(const View& view) const;
+  double altitudeAboveDrawn(const ViewPose& viewed) const;
   std::vector<WantedTile> groundChain(double allowedPixels) const;
   bool requestTiles(double allowedPixels, bool groundFirst);
-  bool advanceLevels(double seconds);
+  bool chooseTiles(const Camera& from, double allowedPixels, double seconds);
 };
 
 ViewSession::ViewSession(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -165,6 +169,18 @@ ViewPose ViewSession::State::resolved(const View& view) const {
   return result;
 }
 
+// Under the drawn ground there is nothing to see. It may be higher than the finest ground that is known, from which
+// poses count, as long as it is coarse: a fine tile has come and has not grown in yet. Then the camera stays above it
+// by half its height above that ground, and sinks as the drawn ground does.
+double ViewSession::State::altitudeAboveDrawn(const ViewPose& viewed) const {
+  const glm::dvec3 direction = directionOf(viewed.longitude, viewed.latitude);
+  const auto ground = stream->groundBelow(direction);
+  const auto surface = stream->drawnHeightBelow(direction, drawn);
+  // A camera under the ground was asked for.
+  if (!ground || !surface || viewed.altitudeMeters <= ground->heightMeters) return viewed.altitudeMeters;
+  return std::max(viewed.altitudeMeters, *surface + 0.5 * (viewed.altitudeMeters - ground->heightMeters));
+}
+
 // The tiles under the camera, down to the level that its height calls for, whether it looks there or not: the ground's
 // height comes from them.
 std::vector<WantedTile> ViewSession::State::groundChain(double allowedPixels) const {
@@ -209,8 +225,12 @@ bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst) {
   return groundKnown;
 }
 
-// From what selection wants drawn to what is drawn; true if that is another picture.
-bool ViewSession::State::advanceLevels(double seconds) {
+// What is wanted from there, and from what is wanted to what is drawn; true if that is another picture.
+bool ViewSession::State::chooseTiles(const Camera& from, double allowedPixels, double seconds) {
+  SelectionSettings settings;
+  settings.errorPixels = allowedPixels;
+  selection = selectTiles(
+      from, stream->body()->selection, [this](const FacePath& path) { return stream->known(path); }, settings);
   std::vector<DrawnTile> next = transitions.advance(selection.draw, seconds, [this](const FacePath& path) {
     return path.level() > 0 && stream->resident(path) != nullptr && stream->resident(path.parent()) != nullptr;
   });
@@ -223,10 +243,26 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   State& s = *state_;
   s.nameUnknownEffects();
   const bool arrived = s.takeArrivals(budget);
-  const ViewPose pose = s.resolved(view);
+  const ViewPose viewed = s.resolved(view);
+  ViewPose pose = viewed;
   const double altitudeBefore = s.pose.altitudeMeters;
-  const Camera camera = cameraFromPose(pose, body().selection.radiusMeters, s.options.verticalFieldOfView,
-                                       view.widthPixels, view.heightPixels);
+  pose.altitudeMeters = s.altitudeAboveDrawn(viewed);
+  const auto cameraOf = [&](const ViewPose& at) {
+    return cameraFromPose(at, body().selection.radiusMeters, s.options.verticalFieldOfView, view.widthPixels,
+                          view.heightPixels);
+  };
+  Camera camera = cameraOf(pose);
+  bool levelsChanged = false;
+  if (!frozen) {
+    levelsChanged = s.chooseTiles(camera, errorPixels, view.seconds);
+    for (int rises = 0; rises < kMostRises; ++rises) {
+      const double altitude = s.altitudeAboveDrawn(viewed);
+      if (altitude <= pose.altitudeMeters) break;
+      pose.altitudeMeters = altitude;
+      camera = cameraOf(pose);
+      levelsChanged = s.chooseTiles(camera, errorPixels, 0) || levelsChanged;
+    }
+  }
   const bool moved = s.firstUpdate || camera.positionBody != s.camera.positionBody || camera.right != s.camera.right ||
                      camera.backward != s.camera.backward || camera.widthPixels != s.camera.widthPixels ||
                      camera.heightPixels != s.camera.heightPixels;
@@ -234,14 +270,8 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   s.pose = pose;
   s.firstUpdate = false;
   UpdateReport report;
-  if (frozen) {
-    report.changed = moved;
-  } else {
-    SelectionSettings settings;
-    settings.errorPixels = errorPixels;
-    s.selection = selectTiles(
-        camera, body().selection, [&s](const FacePath& path) { return s.stream->known(path); }, settings);
-    report.changed = s.advanceLevels(view.seconds) || moved;
+  report.changed = moved || levelsChanged;
+  if (!frozen) {
     const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround);
     report.complete = s.selection.complete && (groundKnown || !view.aboveGround);
     const bool still = !view.aboveGround || pose.altitudeMeters == altitudeBefore;

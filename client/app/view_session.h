@@ -60,7 +60,8 @@ class ViewSession {
   /// Waits until the GPU has drawn what was asked.
   void finish();
 
-  /// The pose that update made of the view: its altitude is above the reference sphere.
+  /// The pose that update made of the view: its altitude is above the reference sphere. A camera that is above the
+  /// ground is held above the drawn ground too, which may be higher as long as it is coarse.
   const ViewPose& pose() const noexcept;
   const Camera& camera() const noexcept;
   std::optional<double> groundHeight(const glm::dvec3& directionBody) const;

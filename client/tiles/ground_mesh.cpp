@@ -14,13 +14,31 @@ constexpr double kEdgeTolerance = 0.05;
 
 double cross2(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
 
+/// Of vertex (i, j) of a grid whose last row and column are number `last`.
+double morphAt(const TileMorph& morph, int last, int i, int j) {
+  const auto of = [&](Side side) { return static_cast<double>(morph.sides[static_cast<std::size_t>(side)]); };
+  const bool uMin = i == 0, uMax = i == last, vMin = j == 0, vMax = j == last;
+  if (vMin && (uMin || uMax)) return of(uMin ? Side::UMinVMin : Side::UMaxVMin);
+  if (vMax && (uMin || uMax)) return of(uMin ? Side::UMinVMax : Side::UMaxVMax);
+  if (uMin || uMax) return of(uMin ? Side::UMin : Side::UMax);
+  if (vMin || vMax) return of(vMin ? Side::VMin : Side::VMax);
+  return static_cast<double>(morph.own);
+}
+
 }  // namespace
 
 /// Positions are taken relative to a point of the ray near the surface, so that millimetres do not drown in the radius.
 struct GroundMesh::Ray {
   glm::dvec3 direction, across, along;  ///< orthonormal
   glm::dvec3 originFromAnchor;          ///< the tile's origin minus the anchor, metres
+  double anchorMeters = 0;              ///< of the anchor, from the body's centre
   double step = 1;
+
+  // Only for a tile that is drawn on its way to its parent.
+  const GroundMesh* parent = nullptr;
+  const TileMorph* morph = nullptr;
+  int firstColumn = 0, firstRow = 0;  ///< of the parent's grid, where the tile's vertex (0, 0) lies
+  glm::dvec3 parentOriginFromAnchor;
 };
 
 GroundMesh GroundMesh::fromTile(const Tile& tile) {
@@ -73,10 +91,19 @@ std::size_t GroundMesh::bytes() const noexcept {
   return offsets_.size() * sizeof(offsets_[0]) + diagonals_.size() + sizeof(*this);
 }
 
-glm::dvec3 GroundMesh::vertex(const Ray& ray, int i, int j) const {
+glm::dvec3 GroundMesh::offset(int i, int j) const {
   const std::size_t at =
       3 * (static_cast<std::size_t>(j) * (static_cast<std::size_t>(cells_) + 1) + static_cast<std::size_t>(i));
-  return ray.originFromAnchor + ray.step * glm::dvec3(offsets_[at], offsets_[at + 1], offsets_[at + 2]);
+  return {offsets_[at], offsets_[at + 1], offsets_[at + 2]};
+}
+
+glm::dvec3 GroundMesh::vertex(const Ray& ray, int i, int j) const {
+  const glm::dvec3 own = ray.originFromAnchor + ray.step * offset(i, j);
+  if (ray.parent == nullptr) return own;
+  // Twice the parent's step times the mean of two offsets is the step times their sum.
+  const int column = (i >> 1) + ray.firstColumn, row = (j >> 1) + ray.firstRow;
+  const glm::dvec3 twice = ray.parent->offset(column, row) + ray.parent->offset(column + (i & 1), row + (j & 1));
+  return own + morphAt(*ray.morph, cells_, i, j) * (ray.parentOriginFromAnchor + ray.step * twice - own);
 }
 
 GroundMesh::Hit GroundMesh::meetCell(const Ray& ray, int i, int j) const {
@@ -109,9 +136,7 @@ GroundMesh::Hit GroundMesh::meetCell(const Ray& ray, int i, int j) const {
   return best;
 }
 
-std::optional<double> GroundMesh::heightMeters(const glm::dvec3& direction, double u, double v,
-                                               double radiusMeters) const {
-  if (empty()) return std::nullopt;
+GroundMesh::Ray GroundMesh::rayAlong(const glm::dvec3& direction) const {
   Ray ray;
   ray.direction = direction;
   const glm::dvec3 helper = std::abs(direction.z) < 0.5 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
@@ -119,9 +144,33 @@ std::optional<double> GroundMesh::heightMeters(const glm::dvec3& direction, doub
   ray.along = glm::cross(direction, ray.across);
   ray.step = stepMeters(stepExponent_);
   const glm::dvec3 origin = latticePosition(origin_, stepExponent_);
-  const double anchor = glm::dot(origin, direction);
-  ray.originFromAnchor = origin - anchor * direction;
+  ray.anchorMeters = glm::dot(origin, direction);
+  ray.originFromAnchor = origin - ray.anchorMeters * direction;
+  return ray;
+}
 
+std::optional<double> GroundMesh::heightMeters(const glm::dvec3& direction, double u, double v,
+                                               double radiusMeters) const {
+  if (empty()) return std::nullopt;
+  return meet(rayAlong(direction), u, v, radiusMeters);
+}
+
+std::optional<double> GroundMesh::morphedHeightMeters(const glm::dvec3& direction, double u, double v,
+                                                      double radiusMeters, const TileMorph& morph,
+                                                      const GroundMesh& parent, int childDigit) const {
+  if (empty()) return std::nullopt;
+  Ray ray = rayAlong(direction);
+  if (parent.cells_ == cells_ && cells_ % 2 == 0 && parent.stepExponent_ == stepExponent_ + 1) {
+    ray.parent = &parent;
+    ray.morph = &morph;
+    ray.firstColumn = (childDigit & 1) != 0 ? cells_ / 2 : 0;
+    ray.firstRow = (childDigit & 2) != 0 ? cells_ / 2 : 0;
+    ray.parentOriginFromAnchor = latticePosition(parent.origin_, parent.stepExponent_) - ray.anchorMeters * direction;
+  }
+  return meet(ray, u, v, radiusMeters);
+}
+
+std::optional<double> GroundMesh::meet(const Ray& ray, double u, double v, double radiusMeters) const {
   const int i = std::clamp(static_cast<int>(std::floor(u * cells_)), 0, cells_ - 1);
   const int j = std::clamp(static_cast<int>(std::floor(v * cells_)), 0, cells_ - 1);
   Hit best = meetCell(ray, i, j);
@@ -134,7 +183,7 @@ std::optional<double> GroundMesh::heightMeters(const glm::dvec3& direction, doub
     }
   }
   if (best.inside < -kEdgeTolerance) return std::nullopt;
-  return (anchor - radiusMeters) + best.alongMeters;
+  return (ray.anchorMeters - radiusMeters) + best.alongMeters;
 }
 
 }  // namespace terrane

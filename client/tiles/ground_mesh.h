@@ -1,6 +1,7 @@
 #pragma once
 // What stays of a tile's mesh in main memory once it is on the GPU: the lattice offsets of its grid vertices in grid
-// order and the diagonal of every cell, 6 bytes a vertex. Answers how high the drawn triangle under a direction is.
+// order and the diagonal of every cell, 6 bytes a vertex. Answers how high the triangle under a direction is, as the
+// tile has it or as it is drawn on its way to its parent.
 // Body frame, metres; const is thread-safe.
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/view/drawn_tile.h"
 #include "proto/tile_mesh.h"
 
 namespace terrane {
@@ -26,14 +28,23 @@ class GroundMesh {
   /// (ground_mesh_test). Empty if the mesh is, or if the ray passes it by.
   std::optional<double> heightMeters(const glm::dvec3& direction, double u, double v, double radiusMeters) const;
 
+  /// The same of the tile as it is drawn: every vertex moved by its morph towards the parent's mesh
+  /// (client/render/morph_grid.h says where to). childDigit: which of the parent's children this is. Where the two
+  /// grids do not fit on one another nothing moves, as on the screen.
+  std::optional<double> morphedHeightMeters(const glm::dvec3& direction, double u, double v, double radiusMeters,
+                                            const TileMorph& morph, const GroundMesh& parent, int childDigit) const;
+
  private:
   struct Ray;
   struct Hit {
     double inside = -1e30;  ///< smallest barycentric coordinate: >= 0 within the triangle
     double alongMeters = 0;
   };
+  Ray rayAlong(const glm::dvec3& direction) const;
+  std::optional<double> meet(const Ray& ray, double u, double v, double radiusMeters) const;
   Hit meetCell(const Ray& ray, int i, int j) const;
   glm::dvec3 vertex(const Ray& ray, int i, int j) const;
+  glm::dvec3 offset(int i, int j) const;
 
   int cells_ = 0;
   int stepExponent_ = 0;

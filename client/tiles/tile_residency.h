@@ -15,6 +15,7 @@
 #include "client/tiles/evicted_heights.h"
 #include "client/tiles/ground_mesh.h"
 #include "common/tiling/face_path.h"
+#include "common/view/drawn_tile.h"
 #include "common/view/tile_selection.h"
 #include "proto/tile_mesh.h"
 
@@ -66,6 +67,9 @@ class TileResidency {
   /// Of the finest cube tile under a direction of any length, body frame. Empty if there is none, or for a direction of
   /// no length.
   std::optional<Ground> groundBelow(const glm::dvec3& directionBody, double radiusMeters) const;
+  /// Of that one of the drawn tiles which is under the direction, as it is drawn; empty if none is.
+  std::optional<double> drawnHeightBelow(const glm::dvec3& directionBody, double radiusMeters,
+                                         const std::vector<DrawnTile>& drawn) const;
 
  private:
   struct Resident {

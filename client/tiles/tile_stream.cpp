@@ -360,6 +360,13 @@ std::optional<TileStream::Ground> TileStream::groundBelow(const glm::dvec3& dire
   return ground ? std::optional(Ground{ground->heightMeters, ground->level}) : std::nullopt;
 }
 
+std::optional<double> TileStream::drawnHeightBelow(const glm::dvec3& directionBody,
+                                                   const std::vector<DrawnTile>& drawn) const {
+  const BodyInfo* body = state_->body;
+  if (!body || body->selection.scheme != Scheme::Cube) return std::nullopt;
+  return state_->residency.drawnHeightBelow(directionBody, body->selection.radiusMeters, drawn);
+}
+
 bool TileStream::idle() const { return state_->idle(); }
 
 StreamStatus TileStream::status() const {

@@ -28,6 +28,7 @@
 
 #include "client/net/simulated_link.h"
 #include "common/result.h"
+#include "common/view/drawn_tile.h"
 #include "common/view/tile_selection.h"
 #include "proto/scene_json.h"
 #include "proto/tile_mesh.h"
@@ -113,6 +114,9 @@ class TileStream {
     int level = 0;
   };
   std::optional<Ground> groundBelow(const glm::dvec3& directionBody) const;
+  /// Height of what is drawn under a direction, morphed as it is drawn, metres above the reference sphere. Coarser than
+  /// groundBelow's while fine tiles have come but not grown in yet. Empty where nothing is drawn.
+  std::optional<double> drawnHeightBelow(const glm::dvec3& directionBody, const std::vector<DrawnTile>& drawn) const;
 
   /// Nothing is queued, fetching, decoding or ready, and nothing waits for a retry. (A viewer that lives on its disk
   /// cache is idle although it goes on trying to reach the server.)

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
 
@@ -86,6 +88,86 @@ TEST(GroundMesh, AgreesWithEveryTriangleTriedInHigherPrecision) {
     }
   }
   EXPECT_GT(compared, 2000);
+}
+
+TileMorph everywhere(float value) {
+  TileMorph morph{.own = value};
+  morph.sides.fill(value);
+  return morph;
+}
+
+TEST(GroundMesh, OnItsWayToTheParentATileIsWhereItIsDrawn) {
+  constexpr unsigned kSeed = 20261126;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const double radius = testing::kMoonRadius;
+  const SmallTileOptions options{radius, 8, false, true};
+  double largestDifference = 0;
+  for (const char* text : {"cube/2/0", "cube/2/0312", "cube/4/11111111", "cube/0/2301230123"}) {
+    const FacePath parentPath = *FacePath::parse(text);
+    const GroundMesh parent = GroundMesh::fromTile(smallTile(parentPath, hilly, options));
+    for (int digit = 0; digit < 4; ++digit) {
+      const GroundMesh mesh = GroundMesh::fromTile(smallTile(parentPath.child(digit), hilly, options));
+      const double bound = 4 * 2.3e-16 * radius;
+      for (int i = 0; i < 60; ++i) {
+        const Place place = placeIn(parentPath.child(digit), 0.02 + 0.96 * unit(random), 0.02 + 0.96 * unit(random));
+        const auto morphed = [&](const TileMorph& morph) {
+          return mesh.morphedHeightMeters(place.direction, place.u, place.v, radius, morph, parent, digit).value();
+        };
+        const double own = mesh.heightMeters(place.direction, place.u, place.v, radius).value();
+        const double all =
+            parent.heightMeters(place.direction, 0.5 * (place.u + (digit & 1)), 0.5 * (place.v + (digit >> 1)), radius)
+                .value();
+        EXPECT_NEAR(morphed(everywhere(0)), own, bound) << text << " " << digit;
+        EXPECT_NEAR(morphed(everywhere(1)), all, bound) << text << " " << digit << " at " << place.u << ", " << place.v;
+        largestDifference = std::max(largestDifference, std::abs(own - all));
+        // Between them by its share, but for what moves sideways.
+        EXPECT_NEAR(morphed(everywhere(0.25f)), own + 0.25 * (all - own), 0.02 * std::abs(all - own) + bound);
+        // Only the edge towards u = 0 is the parent's: beyond the first column of cells nothing has moved.
+        TileMorph edge;
+        edge.sides[static_cast<std::size_t>(Side::UMin)] = 1;
+        if (place.u > 0.125) {
+          EXPECT_NEAR(morphed(edge), own, bound);
+        }
+      }
+    }
+  }
+  EXPECT_GT(largestDifference, 1000) << "or nothing was tested";
+}
+
+TEST(GroundMesh, AnEdgeThatIsTheParentsMeetsTheParentsSurface) {
+  const FacePath path = *FacePath::parse("cube/2/0312");
+  const SmallTileOptions options{testing::kMoonRadius, 8, false, false};
+  const GroundMesh parent = GroundMesh::fromTile(smallTile(path, hilly, options));
+  TileMorph morph;
+  for (const Side side : {Side::UMin, Side::UMinVMin, Side::UMinVMax}) morph.sides[static_cast<std::size_t>(side)] = 1;
+  for (const int digit : {1, 3}) {  // whose edge at u = 0 is in the parent's middle
+    const GroundMesh mesh = GroundMesh::fromTile(smallTile(path.child(digit), hilly, options));
+    double control = 0;
+    for (double v = 0.03; v < 1; v += 0.05) {
+      const Place place = placeIn(path.child(digit), 1e-6, v);
+      const auto on = mesh.morphedHeightMeters(place.direction, place.u, v, testing::kMoonRadius, morph, parent, digit);
+      const auto expected = parent.heightMeters(place.direction, 0.5, 0.5 * (v + (digit >> 1)), testing::kMoonRadius);
+      ASSERT_TRUE(on && expected);
+      EXPECT_NEAR(*on, *expected, 0.1) << "less than a metre inside the edge";
+      control =
+          std::max(control, std::abs(*mesh.heightMeters(place.direction, 0, v, testing::kMoonRadius) - *expected));
+    }
+    EXPECT_GT(control, 10) << "unmorphed it is elsewhere";
+  }
+}
+
+TEST(GroundMesh, NothingMovesTowardsAParentThatDoesNotFit) {
+  const FacePath path = *FacePath::parse("cube/2/0312");
+  const GroundMesh mesh = GroundMesh::fromTile(smallTile(path, hilly));
+  const GroundMesh other =
+      GroundMesh::fromTile(smallTile(path.parent(), hilly, SmallTileOptions{testing::kMoonRadius, 8, false, false}));
+  const Place place = placeIn(path, 0.3, 0.6);
+  const auto own = mesh.heightMeters(place.direction, 0.3, 0.6, testing::kMoonRadius);
+  for (const GroundMesh* parent : {&other, &mesh})
+    EXPECT_EQ(mesh.morphedHeightMeters(place.direction, 0.3, 0.6, testing::kMoonRadius, everywhere(1), *parent, 2),
+              own);
 }
 
 TEST(GroundMesh, AFlatSphereIsNeverAboveItsRadiusAndSagsByTheChord) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/tiling/cube_sphere.h"
 #include "tests/unit/client/small_world.h"
 
 namespace terrane {
@@ -146,6 +147,31 @@ TEST(TileResidency, RemembersNothingOfATileOfAnotherRevision) {
   EXPECT_EQ(small.evictAll().size(), 2u);
   EXPECT_FALSE(small.find("cube/0"));
   EXPECT_TRUE(small.find("cube/1"));
+}
+
+TEST(TileResidency, TheDrawnHeightIsThatOfTheDrawnTileAsItIsDrawnWhateverFinerIsThere) {
+  SmallResidency small;
+  small.add("cube/2/0000000000", 100);
+  small.add("cube/2/00000000003", 160);
+  small.add("cube/2/000000000033", 500);
+  const double tiles = 1024;
+  const glm::dvec3 below = cubeDirection(2, 2 * 0.9 / tiles - 1, 2 * 0.9 / tiles - 1);
+  const auto drawn = [&](std::string_view tile, float morph) {
+    TileMorph all{.own = morph};
+    all.sides.fill(morph);
+    const auto height =
+        small.residency.drawnHeightBelow(3.0 * below, kMoonRadius, {{path("cube/3"), {}}, {path(tile), all}});
+    return height.value_or(-1e9);
+  };
+  EXPECT_NEAR(small.residency.groundBelow(below, kMoonRadius)->heightMeters, 500, 1) << "the finest ground";
+  EXPECT_NEAR(drawn("cube/2/0000000000", 0), 100, 1);
+  EXPECT_NEAR(drawn("cube/2/0000000000", 1), 100, 1) << "without a parent it is drawn as it is";
+  EXPECT_NEAR(drawn("cube/2/00000000003", 0), 160, 1);
+  EXPECT_NEAR(drawn("cube/2/00000000003", 0.5f), 130, 1);
+  EXPECT_NEAR(drawn("cube/2/00000000003", 1), 100, 1);
+  EXPECT_EQ(drawn("cube/2/0000000001", 0), -1e9) << "drawn elsewhere";
+  EXPECT_FALSE(small.residency.drawnHeightBelow(below, kMoonRadius, {}));
+  EXPECT_FALSE(small.residency.drawnHeightBelow(glm::dvec3(0), kMoonRadius, {{path("cube/2/0000000000"), {}}}));
 }
 
 TEST(TileResidency, ClearingForgetsEverything) {
