@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace terrane {
 namespace {
 
@@ -11,14 +14,15 @@ constexpr double kSameFrame = 1e-6;
 
 }  // namespace
 
-Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place) {
-  if (nameOrFile == "descent" || nameOrFile == "orbit")
-    return builtInFlight(nameOrFile, place.longitude, place.latitude);
+Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place, double radiusMeters) {
+  if (nameOrFile == "descent" || nameOrFile == "orbit" || nameOrFile == "ground")
+    return builtInFlight(nameOrFile, place.longitude, place.latitude, radiusMeters);
   auto flight = loadFlight(nameOrFile);
   if (flight) return flight;
   const Error& error = flight.error();
-  return makeError(ErrorKind::InvalidArgument, "--flight",
-                   (error.field == "--flight" ? error.message : error.text()) + " (built in are descent and orbit)");
+  return makeError(
+      ErrorKind::InvalidArgument, "--flight",
+      fmt::format("{} (built in are {})", error.field == "--flight" ? error.message : error.text(), kBuiltInFlights));
 }
 
 Result<FlightPlan> planFlight(const Flight& flight, double stepSeconds, std::size_t maxFrames) {
@@ -39,6 +43,38 @@ Result<FlightPlan> planFlight(const Flight& flight, double stepSeconds, std::siz
         plan.frames.push_back({t, poseAt(flight, t), -1});
     if (!full()) plan.frames.push_back({end, flight.points[i].pose, static_cast<int>(i)});
   }
+  return plan;
+}
+
+FlightPlan planFlightInFrames(const Flight& flight, std::size_t count) {
+  const auto& points = flight.points;
+  FlightPlan plan;
+  plan.aboveGround = flight.aboveGround;
+  plan.points = points.size();
+  if (count < points.size()) {
+    for (std::size_t frame = 0; frame < count; ++frame) {
+      const std::size_t i = count == 1 ? 0 : frame * (points.size() - 1) / (count - 1);
+      plan.frames.push_back({points[i].seconds, points[i].pose, static_cast<int>(i)});
+    }
+    return plan;
+  }
+  // How many of the frames that are no points lie before a time.
+  const double start = points.front().seconds, whole = points.back().seconds - start;
+  const auto framesBefore = [&](double seconds) {
+    return std::llround((seconds - start) / whole * static_cast<double>(count - points.size()));
+  };
+  plan.frames.push_back({start, points.front().pose, 0});
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double from = points[i - 1].seconds, to = points[i].seconds;
+    const auto between = framesBefore(to) - framesBefore(from);
+    for (long long k = 1; k <= between; ++k) {
+      const double t = from + (to - from) * static_cast<double>(k) / static_cast<double>(between + 1);
+      plan.frames.push_back({t, poseAt(flight, t), -1});
+    }
+    plan.frames.push_back({to, points[i].pose, static_cast<int>(i)});
+  }
+  // A flight of a single point stands still.
+  while (plan.frames.size() < count) plan.frames.push_back({start, points.front().pose, -1});
   return plan;
 }
 

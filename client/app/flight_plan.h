@@ -24,12 +24,16 @@ struct FlightPlan {
   std::size_t points = 0;
 };
 
-/// "descent", "orbit" or a file. place: where the built-in flights go.
-Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place);
+/// "descent", "orbit", "ground" or a file. place: where the built-in flights go.
+Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place, double radiusMeters);
 
 /// Frames every stepSeconds from the first point on, and one at exactly each point's time. maxFrames 0: all of them.
 /// Errors: TooLarge naming "--step" beyond ten million frames.
 Result<FlightPlan> planFlight(const Flight& flight, double stepSeconds, std::size_t maxFrames);
+
+/// So many frames over the whole flight, one at exactly each point's time, the others evenly between them; of fewer
+/// frames than points each is a point. Precondition: count > 0.
+FlightPlan planFlightInFrames(const Flight& flight, std::size_t count);
 
 /// count frames of one pose.
 FlightPlan planStill(const ViewPose& pose, bool aboveGround, std::size_t count, double stepSeconds);

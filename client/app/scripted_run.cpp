@@ -104,9 +104,10 @@ Result<FlightPlan> ScriptedRun::plan() {
   const auto frames = static_cast<std::size_t>(options_.frames);
   if (options_.flight.empty())
     return planStill(still, options_.aboveGround, frames > 0 ? frames : counting() ? 8 : 1, options_.stepSeconds);
-  const auto flight = openFlight(options_.flight, still);
+  const auto flight = openFlight(options_.flight, still, session_->body().selection.radiusMeters);
   if (!flight) return flight.error();
-  auto plan = planFlight(*flight, options_.stepSeconds, frames);
+  auto plan = frames > 0 && !options_.stepGiven ? Result<FlightPlan>(planFlightInFrames(*flight, frames))
+                                                : planFlight(*flight, options_.stepSeconds, frames);
   if (plan && options_.aboveGround) plan->aboveGround = true;
   return plan;
 }
@@ -200,13 +201,13 @@ Done ScriptedRun::flyPlan(const FlightPlan& plan) {
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
     const PlannedFrame& frame = plan.frames[i];
     const auto [width, height] = pictureSize();
-    const ViewSession::View view{frame.pose, plan.aboveGround, width, height, options_.stepSeconds};
+    const double seconds = i == 0 ? 0 : frame.seconds - plan.frames[i - 1].seconds;
+    const ViewSession::View view{frame.pose, plan.aboveGround, width, height, seconds};
     // A flight begins with a full view, so that what it shows does not depend on how fast the first tiles came.
     if (options_.settle || (i == 0 && plan.points > 0))
       if (const Done settled = settle(view, options_.settle); !settled) return settled.error();
     if (i > 0 && inRealTime())
-      waitUntil(lastBegin + std::chrono::duration_cast<Clock::duration>(
-                                std::chrono::duration<double>(frame.seconds - plan.frames[i - 1].seconds)));
+      waitUntil(lastBegin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)));
     lastBegin = Clock::now();
     drawFrame(view);
     record_.points.push_back({frame.seconds, session_->pose()});

@@ -99,9 +99,9 @@ void declareOptions(CLI::App& app, RawOptions& raw) {
   app.add_flag("--above-ground", o.aboveGround,
                "Altitudes of --camera and --flight count from the finest ground under the camera");
   app.add_option("--flight", o.flight,
-                 "Fly this: descent (10,000 km to 0.2 m), orbit, or a file as --record writes it; built-in "
-                 "flights go to --camera's place")
-      ->type_name("descent|orbit|FILE");
+                 "Fly this: descent (10,000 km to 0.2 m), orbit, ground (a walk, 30 m to 0.2 m), or a file as --record "
+                 "writes it; built-in flights go to --camera's place")
+      ->type_name("descent|orbit|ground|FILE");
   app.add_option("--record", o.recordFile, "Write what was flown")->type_name("FILE");
   app.add_option("--size", raw.size, "Picture size in pixels")->type_name("WxH")->capture_default_str();
   app.add_option("--fov", raw.fieldOfViewDegrees, "Vertical field of view, degrees, 1..150")
@@ -126,8 +126,10 @@ void declareOptions(CLI::App& app, RawOptions& raw) {
       ->type_name("OUT.png");
   app.add_option("--stats", o.statsFile, "Write figures of the run")->type_name("OUT.json");
   app.add_flag("--hud", o.hud, "Show the overlay in scripted runs too");
-  app.add_option("--frames", o.frames,
-                 "Scripted: frames to draw (default: a flight's own number; otherwise 1, with --stats 8)")
+  app.add_option(
+         "--frames", o.frames,
+         "Scripted: frames to draw (default: a flight's own number; otherwise 1, with --stats 8), spread over the "
+         "whole flight unless --step says how far they are apart")
       ->type_name("N");
   app.add_option("--step", o.stepSeconds,
                  "Scripted flights: seconds between frames; the flight's own points are always among them")
@@ -377,6 +379,7 @@ Result<std::variant<ViewOptions, OptionsText>> parseViewOptions(const std::vecto
   } catch (const CLI::ParseError& error) {
     return errorOf(error, app);
   }
+  raw.options.stepGiven = app.count("--step") > 0;
   auto options = checked(std::move(raw), environment);
   if (!options) return options.error();
   return Parsed{std::move(*options)};

@@ -21,7 +21,7 @@ struct ViewOptions {
   std::string body;                ///< empty: the scene's first
   std::optional<ViewPose> camera;  ///< none: the whole body in view
   bool aboveGround = false;        ///< the camera's altitude counts from the finest ground under it
-  std::string flight;              ///< "descent", "orbit", a file, or empty
+  std::string flight;              ///< "descent", "orbit", "ground", a file, or empty
   std::string recordFile;
   int widthPixels = 1280, heightPixels = 720;
   double verticalFieldOfView = 0.8726646259971648;  ///< 50 degrees
@@ -39,6 +39,7 @@ struct ViewOptions {
   NetworkConditions network;
   int frames = 0;                 ///< 0: as many as it takes
   double stepSeconds = 1.0 / 30;  ///< of a scripted flight
+  bool stepGiven = false;         ///< otherwise --frames spreads over the whole flight
   double timeLimitSeconds = 120;  ///< for one view to be complete in a scripted run
 
   /// Runs to an end by itself, with a fixed time step, instead of following a person's hands.

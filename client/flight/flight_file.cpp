@@ -11,6 +11,8 @@
 #include <numbers>
 #include <optional>
 
+#include "client/flight/ground_flight.h"
+
 namespace terrane {
 namespace {
 
@@ -256,15 +258,16 @@ ViewPose poseAt(const Flight& flight, double seconds) {
   return pose;
 }
 
-Result<Flight> builtInFlight(std::string_view name, double longitude, double latitude) {
+Result<Flight> builtInFlight(std::string_view name, double longitude, double latitude, double radiusMeters) {
   if (!std::isfinite(longitude) || !std::isfinite(latitude) || std::abs(latitude) > kPi / 2 + 1e-12) {
     return makeError(ErrorKind::InvalidArgument, "--flight",
                      "needs a place: a finite longitude and a latitude from -90 to 90 degrees");
   }
   if (name == "descent") return descent(longitude, latitude);
   if (name == "orbit") return orbit(longitude, latitude);
+  if (name == "ground") return groundFlight(longitude, latitude, radiusMeters);
   return makeError(ErrorKind::InvalidArgument, "--flight",
-                   shown(name) + " is no flight; built in are descent and orbit, else name a file");
+                   fmt::format("{} is no flight; built in are {}, else name a file", shown(name), kBuiltInFlights));
 }
 
 }  // namespace terrane

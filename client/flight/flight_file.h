@@ -44,8 +44,9 @@ ViewPose poseAt(const Flight& flight, double seconds);
 /// Heights above ground of the descent's way-points, one for each of its points.
 inline constexpr std::array<double, 8> kDescentAltitudesMeters{1e7, 1e6, 1e5, 1e4, 1e3, 1e2, 2.0, 0.2};
 
-/// "descent": 10,000 km to 0.2 m over one place; "orbit": once around at 100 km, leaving eastward. Radians. Errors name
-/// "--flight".
-Result<Flight> builtInFlight(std::string_view name, double longitude, double latitude);
+/// "descent": 10,000 km to 0.2 m over one place; "orbit": once around at 100 km, leaving eastward; "ground": a walk
+/// (ground_flight.h). Radians; the radius is the body's. Errors name "--flight".
+Result<Flight> builtInFlight(std::string_view name, double longitude, double latitude, double radiusMeters);
+inline constexpr std::string_view kBuiltInFlights = "descent, orbit and ground";
 
 }  // namespace terrane

@@ -1,4 +1,5 @@
 #include "client/flight/flight_file.h"
+#include "client/flight/ground_flight.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,6 +17,7 @@ namespace terrane {
 namespace {
 
 using ::testing::HasSubstr;
+constexpr double kRadius = 1'737'400;
 constexpr double kDegree = std::numbers::pi / 180;
 
 Flight parsed(std::string_view text) {
@@ -120,7 +122,7 @@ TEST(FlightFile, AnyBytesAreAFlightOrAnErrorWithALine) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::mt19937 random(kSeed);
   const std::string alphabet = "0123456789.-+e \t\r\n#abovegrundnif\xff\x01";
-  const std::string valid = writeFlight(*builtInFlight("descent", -0.3, 0.2));
+  const std::string valid = writeFlight(*builtInFlight("descent", -0.3, 0.2, kRadius));
   int flights = 0;
   for (int round = 0; round < 5000; ++round) {
     std::string text;
@@ -205,7 +207,7 @@ TEST(FlightFile, OppositePlacesAreJoinedOverAPole) {
 }
 
 TEST(BuiltInFlight, TheDescentFallsThroughItsWayPointsAboveGround) {
-  const auto flight = builtInFlight("descent", -0.35, 0.168);
+  const auto flight = builtInFlight("descent", -0.35, 0.168, kRadius);
   ASSERT_TRUE(flight);
   EXPECT_TRUE(flight->aboveGround);
   ASSERT_EQ(flight->points.size(), kDescentAltitudesMeters.size());
@@ -230,7 +232,7 @@ TEST(BuiltInFlight, TheDescentFallsThroughItsWayPointsAboveGround) {
 
 TEST(BuiltInFlight, TheOrbitGoesOnceAroundLookingAhead) {
   for (const double latitude : {0.0, 0.5, -1.2, std::numbers::pi / 2}) {
-    const auto flight = builtInFlight("orbit", 0.7, latitude);
+    const auto flight = builtInFlight("orbit", 0.7, latitude, kRadius);
     ASSERT_TRUE(flight);
     EXPECT_FALSE(flight->aboveGround);
     double travelled = 0;
@@ -250,9 +252,72 @@ TEST(BuiltInFlight, TheOrbitGoesOnceAroundLookingAhead) {
   }
 }
 
+/// Speed over ground, heading, pitch and the logarithm of the height, a second.
+struct Motion {
+  glm::dvec3 walk;
+  double turn, nod, climb;
+};
+
+Motion motionAt(const Flight& flight, double seconds, double over) {
+  const ViewPose a = poseAt(flight, seconds), b = poseAt(flight, seconds + over);
+  return {(directionOf(b) - directionOf(a)) * kRadius / over,
+          std::remainder(b.heading - a.heading, 2 * std::numbers::pi) / over, (b.pitch - a.pitch) / over,
+          std::log(b.altitudeMeters / a.altitudeMeters) / over};
+}
+
+TEST(BuiltInFlight, TheWalkGoesSomeHundredMetresSmoothlyThroughItsHeights) {
+  for (const double latitude : {0.377, -1.2, std::numbers::pi / 2}) {
+    const auto flight = builtInFlight("ground", -0.286, latitude, kRadius);
+    ASSERT_TRUE(flight);
+    EXPECT_TRUE(flight->aboveGround);
+    EXPECT_NEAR(flight->durationSeconds(), kGroundHeights.back().seconds, 1e-9);
+    for (const auto& height : kGroundHeights)
+      EXPECT_NEAR(poseAt(*flight, height.seconds).altitudeMeters, height.metersAboveGround, 1e-9);
+    constexpr double kStep = 1.0 / 30;
+    double walked = 0, lowest = 1e9, highest = 0, leftmost = 0, rightmost = 0;
+    Motion before = motionAt(*flight, 0, kStep);
+    for (int i = 1; i < 30 * 60; ++i) {
+      const Motion now = motionAt(*flight, i * kStep, kStep);
+      const ViewPose pose = poseAt(*flight, i * kStep);
+      walked += glm::length(now.walk) * kStep;
+      lowest = std::min(lowest, pose.altitudeMeters);
+      highest = std::max(highest, pose.altitudeMeters);
+      leftmost = std::min(leftmost, now.turn);
+      rightmost = std::max(rightmost, now.turn);
+      EXPECT_GT(glm::length(now.walk), 0.5) << "it never stands still";
+      EXPECT_LT(glm::length(now.walk), 8);
+      // From frame to frame next to nothing changes: no kink, no jerk.
+      EXPECT_LT(glm::length(now.walk - before.walk), 0.5) << i;
+      EXPECT_LT(std::abs(now.turn - before.turn), 3 * kDegree) << i;
+      EXPECT_LT(std::abs(now.nod - before.nod), 3 * kDegree) << i;
+      EXPECT_LT(std::abs(now.climb - before.climb), 0.15) << i;
+      before = now;
+    }
+    EXPECT_GT(walked, 150);
+    EXPECT_LT(walked, 400);
+    EXPECT_NEAR(lowest, 0.2, 1e-9);
+    EXPECT_NEAR(highest, 30, 1e-9);
+    EXPECT_LT(leftmost, -10 * kDegree) << "the head turns one way";
+    EXPECT_GT(rightmost, 10 * kDegree) << "and the other";
+    EXPECT_TRUE(parseFlight(writeFlight(*flight), "f"));
+  }
+}
+
+TEST(BuiltInFlight, TheWalkIsAsLongOnEveryBody) {
+  for (const double radius : {1e3, kRadius, 7e7}) {
+    const auto flight = builtInFlight("ground", 1, 0.5, radius);
+    ASSERT_TRUE(flight);
+    double walked = 0;
+    for (std::size_t i = 1; i < flight->points.size(); ++i)
+      walked += radius * glm::distance(directionOf(flight->points[i].pose), directionOf(flight->points[i - 1].pose));
+    EXPECT_NEAR(walked, 240, 90) << radius;
+  }
+}
+
 TEST(BuiltInFlight, UnknownNamesAndImpossiblePlacesNameTheFlag) {
   for (const auto& flight :
-       {builtInFlight("ascent", 0, 0), builtInFlight("descent", std::nan(""), 0), builtInFlight("orbit", 0, 2)}) {
+       {builtInFlight("ascent", 0, 0, kRadius), builtInFlight("descent", std::nan(""), 0, kRadius),
+        builtInFlight("orbit", 0, 2, kRadius), builtInFlight("ground", 0, std::nan(""), kRadius)}) {
     ASSERT_FALSE(flight);
     EXPECT_EQ(flight.error().field, "--flight");
     EXPECT_EQ(flight.error().kind, ErrorKind::InvalidArgument);
