@@ -253,12 +253,13 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   };
   Camera camera = cameraOf(pose);
   bool levelsChanged = false;
+  double altitudeDue = pose.altitudeMeters;  // above what is drawn now, not a frame ago
   if (!frozen) {
     levelsChanged = s.chooseTiles(camera, errorPixels, view.seconds);
     for (int rises = 0; rises < kMostRises; ++rises) {
-      const double altitude = s.altitudeAboveDrawn(viewed);
-      if (altitude <= pose.altitudeMeters) break;
-      pose.altitudeMeters = altitude;
+      altitudeDue = s.altitudeAboveDrawn(viewed);
+      if (altitudeDue <= pose.altitudeMeters) break;
+      pose.altitudeMeters = altitudeDue;
       camera = cameraOf(pose);
       levelsChanged = s.chooseTiles(camera, errorPixels, 0) || levelsChanged;
     }
@@ -274,7 +275,8 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   if (!frozen) {
     const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround);
     report.complete = s.selection.complete && (groundKnown || !view.aboveGround);
-    const bool still = !view.aboveGround || pose.altitudeMeters == altitudeBefore;
+    const bool still =
+        pose.altitudeMeters == altitudeDue && (!view.aboveGround || pose.altitudeMeters == altitudeBefore);
     const bool idle = s.stream->idle();
     report.settled =
         s.selection.complete && s.transitions.settled() && groundKnown && still && !arrived && s.missing == 0 && idle;
