@@ -39,13 +39,22 @@ void FeatureGathering::start(const std::shared_ptr<const FeatureTables>& tables,
   features_.clear();
   layerEnds_.clear();
   landmarks_.clear();
+  halos_.clear();
+  haloEnds_.clear();
+  for (const Halo& h : tables->landmarkHalos)
+    if (distance(h.center, ball_.center) <= h.reach + ball_.radius) halos_.push_back(h);
+  haloEnds_.push_back(halos_.size());
   for (const Feature& f : tables->landmarks)
     if (distance(f.center, ball_.center) <= f.reach + ball_.radius) landmarks_.push_back(f);
 }
 
-std::span<const FeatureRun> FeatureGathering::runs(const std::shared_ptr<const FeatureTables>& tables,
-                                                   const PointSet& points, double minWavelength, bool inDouble) {
+GatheredFeatures FeatureGathering::near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
+                                        double minWavelength, bool inDouble) {
   if (!covers(*tables, points)) start(tables, points.ball);
+  return {runs(minWavelength, inDouble), halos(minWavelength)};
+}
+
+std::span<const FeatureRun> FeatureGathering::runs(double minWavelength, bool inDouble) {
   const std::vector<FeatureLayer>& layers = tables_->layers;
   std::size_t count = 0;
   while (count < layers.size() && layers[count].longestWavelengthMeters() >= minWavelength) ++count;
@@ -63,6 +72,17 @@ std::span<const FeatureRun> FeatureGathering::runs(const std::shared_ptr<const F
   while (shown < landmarks_.size() && landmarks_[shown].radius >= minWavelength) ++shown;
   if (shown > 0) runs_.push_back({landmarks_.data(), shown, FeatureStage::YoungCrater, inDouble});
   return runs_;
+}
+
+std::span<const Halo> FeatureGathering::halos(double minWavelength) {
+  const std::vector<FeatureLayer>& layers = tables_->layers;
+  std::size_t count = 0;
+  while (count < layers.size() && layers[count].longestHaloMeters() >= minWavelength) ++count;
+  while (haloEnds_.size() <= count) {
+    gatherHalos(layers[haloEnds_.size() - 1], tables_->bodyRadius, ball_.center, ball_.radius, halos_);
+    haloEnds_.push_back(halos_.size());
+  }
+  return std::span(halos_).first(haloEnds_[count]);
 }
 
 }  // namespace terrane::lunar

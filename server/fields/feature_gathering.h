@@ -1,6 +1,6 @@
 #pragma once
-// The craters and rocks near a ball, gathered once for all batches that lie within it: a tile's grid, then its borders
-// at the levels beside it. Body frame, metres. Belongs to one thread.
+// The craters, their halos and the rocks near a ball, gathered once for all batches that lie within it: a tile's grid,
+// then its borders at the levels beside it. Body frame, metres. Belongs to one thread.
 
 #include <memory>
 #include <span>
@@ -29,24 +29,34 @@ struct FeatureTables {
   double bodyRadius = 0;
   std::vector<FeatureLayer> layers;  ///< coarse to fine
   std::vector<Feature> landmarks;    ///< by falling size
+  std::vector<Halo> landmarkHalos;
+};
+
+struct GatheredFeatures {
+  std::span<const FeatureRun> runs;
+  std::span<const Halo> halos;
 };
 
 class FeatureGathering {
  public:
   /// Features that may reach any of the points, of all layers with wavelengths of at least minWavelength, coarse to
-  /// fine, within a layer by face, row and column, landmarks last: the order of the sums. Valid until the next call.
-  /// inDouble: large features are computed in double.
-  std::span<const FeatureRun> runs(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
-                                   double minWavelength, bool inDouble);
+  /// fine, within a layer by face, row and column, landmarks last (of halos first): the order of the sums. Valid until
+  /// the next call. inDouble: large features are computed in double.
+  GatheredFeatures near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
+                        double minWavelength, bool inDouble);
 
  private:
   bool covers(const FeatureTables& tables, const PointSet& points) const noexcept;
+  std::span<const FeatureRun> runs(double minWavelength, bool inDouble);
+  std::span<const Halo> halos(double minWavelength);
   void start(const std::shared_ptr<const FeatureTables>& tables, const Ball& ball);
 
   std::shared_ptr<const FeatureTables> tables_;  ///< held, so that it is never mistaken for another's
   Ball ball_;
   std::vector<Feature> features_, landmarks_;
-  std::vector<std::size_t> layerEnds_;  ///< of the layers gathered so far
+  std::vector<Halo> halos_;
+  std::vector<std::size_t> layerEnds_,
+      haloEnds_;  ///< of the layers gathered so far; of the landmarks' halos before them
   std::vector<FeatureRun> runs_;
 };
 

@@ -57,8 +57,8 @@ double patchiness(const FeatureLayer& layer, const Cell& cell) noexcept {
   return low + v * (high - low);
 }
 
-double wearOf(const FeatureLayer& layer, std::uint64_t h) noexcept {
-  const double u = hashUnit(h);
+double wearOf(const FeatureLayer& layer, std::uint64_t cell) noexcept {
+  const double u = hashUnit(mixHash(cell ^ 10));
   const double skewed = layer.wearSkew > 1 ? 1.0 - (1.0 - u) * (1.0 - u) : layer.wearSkew < 1 ? u * u : u;
   return layer.wearMin + (layer.wearMax - layer.wearMin) * skewed;
 }
@@ -113,11 +113,10 @@ Feature makeRock(const double direction[3], double bodyRadius, double diameter, 
   tangentFrame(n, hash, f.axis1, f.axis2);
   randomLobes(f, hash, kRockLobes);
   f.radius = 0.5 * diameter;
-  f.reach = f.heightReach = f.radius / narrowest(f) * (1 + 1e-5);
+  f.reach = f.radius / narrowest(f) * (1 + 1e-5);
   f.floorBlend = f.rimBlend = 1;
   f.peak = f.radius * (0.35 + (kRockHeight - 0.35) * hashUnit(mixHash(hash ^ 5)));
   f.brightness = static_cast<float>(0.01 + 0.035 * hashUnit(mixHash(hash ^ 6)));
-  f.inverseHaloSquared = 1.0f;
   return f;
 }
 
@@ -166,12 +165,9 @@ bool isOccupied(const FeatureLayer& layer, const Cell& cell, std::uint64_t hash)
 /// Where a cell's feature is and how large: all of it but its shape.
 struct Site {
   double direction[3];
-  double diameter = 0, wear = 0, reach = 0;
+  double diameter = 0, reach = 0;
   std::uint64_t hash = 0;
 };
-
-/// Young craters up to this wear have a bright halo.
-constexpr double kHaloWear = 0.12;
 
 /// False if the cell is too narrow for the feature.
 bool chooseSite(const FeatureLayer& layer, double bodyRadius, const Cell& cell, std::uint64_t hash, const CellSpan& s,
@@ -198,25 +194,63 @@ bool chooseSite(const FeatureLayer& layer, double bodyRadius, const Cell& cell, 
   out.direction[2] = direction.z;
   out.diameter = diameter;
   out.hash = hash;
-  out.wear = rock ? 0 : wearOf(layer, mixHash(hash ^ 10));
-  const bool halo = layer.stage == FeatureStage::YoungCrater && out.wear < kHaloWear;
-  out.reach = rock ? bowl : 0.5 * diameter * (halo ? kHaloRadii : kApronRadii / (1 - kCraterLobes));
-  out.reach *= 1 + 1e-5;
+  out.reach = (rock ? bowl : kApronRadii * bowl) * (1 + 1e-5);
   return true;
 }
 
 Feature featureAt(const FeatureLayer& layer, double bodyRadius, const Site& site) noexcept {
   if (layer.stage == FeatureStage::Rock) return makeRock(site.direction, bodyRadius, site.diameter, site.hash);
-  Feature f = makeCrater(site.direction, bodyRadius, site.diameter, site.wear, site.hash);
-  if (layer.stage == FeatureStage::YoungCrater && site.wear < kHaloWear) {
-    const double youth = 1 - site.wear / kHaloWear;
-    f.brightness = static_cast<float>((layer.exponent >= 4 ? 0.09 : 0.03) * youth);
-    f.rays = static_cast<float>(0.6 * youth);
-    f.reach = kHaloRadii * f.radius * (1 + 1e-5);
-    f.inverseHaloSquared = static_cast<float>(1 / (kHaloRadii * kHaloRadii));
-  }
-  return f;
+  return makeCrater(site.direction, bodyRadius, site.diameter, wearOf(layer, site.hash), site.hash);
 }
+
+/// A ball that features may reach into.
+struct Target {
+  const double* center;
+  double radius;
+
+  bool touchedFrom(const double at[3], double scale, double reach) const noexcept {
+    const double dx = at[0] * scale - center[0], dy = at[1] * scale - center[1], dz = at[2] * scale - center[2];
+    const double limit = radius + reach;
+    return dx * dx + dy * dy + dz * dz <= limit * limit;
+  }
+};
+
+/// Calls visit(site) for the feature of every occupied cell within reach of the ball, in the order face, row, column;
+/// where matters(hash) is false the site is not even computed.
+template <class Matters, class Visit>
+void forEachSite(const FeatureLayer& layer, double bodyRadius, const Target& ball, double reach, const Matters& matters,
+                 const Visit& visit) {
+  thread_local std::vector<CellSpan> columnSpans;
+  const double within = ball.radius + reach;
+  for (int face = 0; face < 6; ++face) {
+    const FaceAxes& axes = cubeFaceAxes(face);
+    const auto along = [&](const glm::dvec3& a) {
+      return a.x * ball.center[0] + a.y * ball.center[1] + a.z * ball.center[2];
+    };
+    const double outward = along(axes.normal);
+    if (outward + within < 0) continue;
+    const Range columns = cellRange(along(axes.u), outward, within, layer.cellsPerFace);
+    const Range rows = cellRange(along(axes.v), outward, within, layer.cellsPerFace);
+    if (columns.first > columns.last) continue;
+    columnSpans.clear();
+    for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
+      const CellSpan rowSpan = cellSpan(layer, row);
+      for (std::uint32_t column = columns.first; column <= columns.last; ++column) {
+        if (row == rows.first) columnSpans.push_back(cellSpan(layer, column));
+        const Cell cell{face, column, row};
+        const std::uint64_t hash = cellHash(layer, cell);
+        Site site;
+        if (isOccupied(layer, cell, hash) && matters(hash) &&
+            chooseSite(layer, bodyRadius, cell, hash, columnSpans[column - columns.first], rowSpan, site)) {
+          visit(site);
+        }
+      }
+    }
+  }
+}
+
+/// Of a reach, for what rounding does to it.
+double widened(double reach, double bodyRadius) noexcept { return reach * (1 + 1e-6) + 1e-9 * bodyRadius; }
 
 }  // namespace
 
@@ -263,9 +297,7 @@ Feature makeCrater(const double direction[3], double bodyRadius, double diameter
   f.rimBlend = f.rim * (0.7 + 4.5 * wear);
   const bool peaked = diameter > 20000 && diameter < 200000 && wear < 0.6;
   f.peak = peaked ? fresh.peak * (1 - wear) : 0;
-  f.heightReach = kApronRadii * f.radius / narrowest(f) * (1 + 1e-5);
-  f.reach = f.heightReach;
-  f.inverseHaloSquared = 1.0f;
+  f.reach = kApronRadii * f.radius / narrowest(f) * (1 + 1e-5);
   return f;
 }
 
@@ -285,83 +317,47 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
 void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const double center[3], double ballRadius,
                     std::vector<Feature>& out) {
   const bool rock = layer.stage == FeatureStage::Rock;
-  const double halo = layer.stage == FeatureStage::YoungCrater ? kHaloRadii : kApronRadii / (1 - kCraterLobes);
-  const double reach = ballRadius + 0.51 * layer.largestDiameter() * (rock ? 1 / (1 - kRockLobes) : halo);
-  const auto touches = [&](const double at[3], double scale, double featureReach) {
-    const double dx = at[0] * scale - center[0], dy = at[1] * scale - center[1], dz = at[2] * scale - center[2];
-    const double limit = ballRadius + featureReach;
-    return dx * dx + dy * dy + dz * dz <= limit * limit;
-  };
-  thread_local std::vector<CellSpan> columnSpans;
-  for (int face = 0; face < 6; ++face) {
-    const FaceAxes& axes = cubeFaceAxes(face);
-    const auto along = [&](const glm::dvec3& a) { return a.x * center[0] + a.y * center[1] + a.z * center[2]; };
-    const double outward = along(axes.normal);
-    if (outward + reach < 0) continue;
-    const Range columns = cellRange(along(axes.u), outward, reach, layer.cellsPerFace);
-    const Range rows = cellRange(along(axes.v), outward, reach, layer.cellsPerFace);
-    if (columns.first > columns.last) continue;
-    columnSpans.clear();
-    for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
-      const CellSpan rowSpan = cellSpan(layer, row);
-      for (std::uint32_t column = columns.first; column <= columns.last; ++column) {
-        if (row == rows.first) columnSpans.push_back(cellSpan(layer, column));
-        const Cell cell{face, column, row};
-        const std::uint64_t hash = cellHash(layer, cell);
-        Site site;
-        if (!isOccupied(layer, cell, hash) ||
-            !chooseSite(layer, bodyRadius, cell, hash, columnSpans[column - columns.first], rowSpan, site)) {
-          continue;
-        }
+  const double reach =
+      0.51 * layer.largestDiameter() * (rock ? 1 / (1 - kRockLobes) : kApronRadii / (1 - kCraterLobes));
+  const Target ball{center, ballRadius};
+  forEachSite(
+      layer, bodyRadius, ball, reach, [](std::uint64_t) { return true; },
+      [&](const Site& site) {
         // The shape costs more than the place: most of what lies in the cells around a ball does not reach it.
-        if (!touches(site.direction, bodyRadius, site.reach * (1 + 1e-6) + 1e-9 * bodyRadius)) continue;
+        if (!ball.touchedFrom(site.direction, bodyRadius, widened(site.reach, bodyRadius))) return;
         const Feature f = featureAt(layer, bodyRadius, site);
-        if (touches(f.center, 1.0, f.reach)) out.push_back(f);
-      }
-    }
-  }
+        if (ball.touchedFrom(f.center, 1.0, f.reach)) out.push_back(f);
+      });
 }
 
-std::vector<FeatureLayer> makeLayers(const LayerSettings& settings) {
-  std::vector<FeatureLayer> layers;
-  const double halfCircle = 1.5707963267948966 * settings.radiusMeters;  // a face is a quarter of a great circle wide
-  const auto add = [&](FeatureStage stage, int exponent, double occupancy, double wearMin, double wearMax, double skew,
-                       std::uint64_t salt) {
-    FeatureLayer layer;
-    layer.stage = stage;
-    layer.exponent = exponent;
-    layer.occupancy = occupancy;
-    layer.wearMin = wearMin;
-    layer.wearMax = wearMax;
-    layer.wearSkew = skew;
-    layer.seed = mixHash(settings.seed ^ mixHash(salt * 1000 + static_cast<std::uint64_t>(exponent + 100)));
-    const double cells = std::floor(halfCircle / (2 * layer.largestDiameter()));
-    if (cells < 2 || layer.wavelengthMeters() < settings.finestDetailMeters || occupancy <= 0) return;
-    layer.cellsPerFace = static_cast<std::uint32_t>(std::min(cells, 4294967295.0));
-    layers.push_back(layer);
-  };
-  const double craters = settings.craterDensity, rocks = settings.rockDensity;
-  // From 524 km down to 2 km: highland craters, older than the lava; twice over, for they stand rim on rim.
-  constexpr double kOld[] = {0.5, 0.8, 0.85, 0.85, 0.7, 0.65, 0.55, 0.5};
-  for (int k = 18; k >= 11; --k) {
-    add(FeatureStage::OldCrater, k, craters * kOld[18 - k], k >= 15 ? 0.05 : 0.1, k >= 15 ? 0.75 : 0.85, 1, 1);
-    if (k <= 17) add(FeatureStage::OldCrater, k, craters * 0.75, 0.3, k >= 15 ? 0.9 : 0.95, 1, 5);
-  }
-  // Younger than the lava: few large ones, saturated from some hundred metres down.
-  for (int k = 14; k >= -4; --k) {
-    constexpr double kYoung[] = {0.09, 0.11, 0.14, 0.19, 0.26, 0.4, 0.6, 0.8};  // 16 km .. 128 m
-    const int index = 14 - k;
-    const double share = index < 8 ? kYoung[index] : 0.92;
-    const bool small = k <= 8;
-    add(FeatureStage::YoungCrater, k, craters * share, 0.0, small ? 0.95 : 0.8, small ? 2 : 1, 2);
-    if (k <= 8) add(FeatureStage::YoungCrater, k, craters * 0.85, 0.5, 0.97, 1, 3);
-  }
-  // Boulders of metres down to grains.
-  constexpr double kRock[] = {0.004, 0.008, 0.015, 0.025, 0.035, 0.05, 0.07, 0.1, 0.16, 0.25, 0.35};
-  for (int k = 1; k >= -9; --k) add(FeatureStage::Rock, k, rocks * kRock[1 - k], 0, 0, 1, 4);
-  std::stable_sort(layers.begin(), layers.end(),
-                   [](const FeatureLayer& a, const FeatureLayer& b) { return a.exponent > b.exponent; });
-  return layers;
+Halo makeHalo(const Feature& crater, double brightness, double rays) noexcept {
+  Halo h{};
+  std::copy(crater.center, crater.center + 3, h.center);
+  std::copy(crater.axis1, crater.axis1 + 3, h.axis1);
+  std::copy(crater.axis2, crater.axis2 + 3, h.axis2);
+  h.radius = crater.radius;
+  h.reach = kHaloRadii * crater.radius * (1 + 1e-5);
+  h.brightness = static_cast<float>(brightness);
+  h.rays = static_cast<float>(rays);
+  return h;
+}
+
+void gatherHalos(const FeatureLayer& layer, double bodyRadius, const double center[3], double ballRadius,
+                 std::vector<Halo>& out) {
+  if (!layer.hasHalos()) return;
+  const Target ball{center, ballRadius};
+  forEachSite(
+      layer, bodyRadius, ball, 0.51 * layer.largestDiameter() * kHaloRadii,
+      [&](std::uint64_t hash) { return wearOf(layer, hash) < kHaloWear; },
+      [&](const Site& site) {
+        const double reach = 0.5 * site.diameter * kHaloRadii * (1 + 1e-5);
+        if (!ball.touchedFrom(site.direction, bodyRadius, widened(reach, bodyRadius))) return;
+        const double youth = 1 - wearOf(layer, site.hash) / kHaloWear;
+        // Of many halos few are bright.
+        const double brightness = (layer.exponent >= 4 ? 0.08 : 0.03) * youth * youth;
+        const Halo h = makeHalo(featureAt(layer, bodyRadius, site), brightness, 0.25 * youth);
+        if (ball.touchedFrom(h.center, 1.0, h.reach)) out.push_back(h);
+      });
 }
 
 }  // namespace terrane::lunar

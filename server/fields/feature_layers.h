@@ -23,6 +23,9 @@
 
 namespace terrane::lunar {
 
+/// Young craters up to this wear have a halo.
+inline constexpr double kHaloWear = 0.12;
+
 struct FeatureLayer {
   FeatureStage stage = FeatureStage::YoungCrater;
   int exponent = 0;  ///< D in [2^exponent, 2^(exponent + 1)) metres
@@ -38,6 +41,9 @@ struct FeatureLayer {
   /// layer's shortest and longest.
   double wavelengthMeters() const noexcept { return 0.5 * smallestDiameter(); }
   double longestWavelengthMeters() const noexcept { return 0.5 * largestDiameter(); }
+  /// A halo's wavelength is its own radius: it is seen where the crater in it is not yet.
+  bool hasHalos() const noexcept { return stage == FeatureStage::YoungCrater && wearMin < kHaloWear; }
+  double longestHaloMeters() const noexcept { return kHaloRadii * longestWavelengthMeters(); }
 };
 
 /// The outline's lobes stay within 1 +- this.
@@ -45,8 +51,6 @@ inline constexpr double kCraterLobes = 0.10;
 inline constexpr double kRockLobes = 0.24;
 /// A rock is at most this many radii high.
 inline constexpr double kRockHeight = 0.9;
-/// Halos of the freshest craters end here, in crater radii.
-inline constexpr double kHaloRadii = 4.5;
 
 /// What a crater of this diameter looks like before wear, metres.
 struct Morphometry {
@@ -60,7 +64,10 @@ Morphometry freshCrater(double diameterMeters) noexcept;
 Feature makeCrater(const double direction[3], double bodyRadius, double diameter, double wear,
                    std::uint64_t hash) noexcept;
 
-/// Layers from coarse to fine for a body.
+/// Around a crater, in its tangent frame. rays: how much of the brightness they sway by.
+Halo makeHalo(const Feature& crater, double brightness, double rays) noexcept;
+
+/// Layers from coarse to fine for a body (feature_layer_table.cpp).
 struct LayerSettings {
   double radiusMeters = 0, craterDensity = 1, rockDensity = 1, finestDetailMeters = 0;
   std::uint64_t seed = 0;
@@ -70,6 +77,10 @@ std::vector<FeatureLayer> makeLayers(const LayerSettings& settings);
 /// Appends every feature of the layer that may reach into the ball, in the order face, row, column.
 void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const double center[3], double ballRadius,
                     std::vector<Feature>& out);
+
+/// In the same way the halos of the layer's craters.
+void gatherHalos(const FeatureLayer& layer, double bodyRadius, const double center[3], double ballRadius,
+                 std::vector<Halo>& out);
 
 /// The feature of one cell, if it has one.
 bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::uint32_t column, std::uint32_t row,

@@ -108,7 +108,7 @@ BoundedComponent overlapping(std::span<const Feature> features, std::size_t subj
     const double* a = f.center;
     const double* b = features[subject].center;
     const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
-    const double limit = f.heightReach + features[subject].heightReach;
+    const double limit = f.reach + features[subject].reach;
     if (dx * dx + dy * dy + dz * dz > limit * limit) continue;
     const FeatureBounds one = featureBounds(f);
     sum.low += std::min(0.0, one.low);

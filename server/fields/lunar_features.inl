@@ -115,8 +115,7 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
     lobeCos[k] = Real(f.lobeCos[k]);
     lobeSin[k] = Real(f.lobeSin[k]);
   }
-  const float brightness = f.brightness * static_cast<float>(shape.shown), inverseHalo = f.inverseHaloSquared,
-              rays = f.rays;
+  const float brightness = f.brightness * static_cast<float>(shape.shown);
   for (std::size_t i = begin; i < begin + kChunk; ++i) {
     const Real dx = static_cast<Real>(b.x[i] - cx), dy = static_cast<Real>(b.y[i] - cy),
                dz = static_cast<Real>(b.z[i] - cz);
@@ -145,12 +144,20 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
     (kOld ? b.reliefY : b.youngY)[i] += static_cast<float>(radial * dy + angular * (c * by - s * ay));
     (kOld ? b.reliefZ : b.youngZ)[i] += static_cast<float>(radial * dz + angular * (c * bz - s * az));
 
-    // The halo's rays lean on the last lobe (order 5).
-    const float rest = 1.0f - static_cast<float>(square) * inverseHalo;
-    const float halo = rest > 0.0f ? rest : 0.0f;
-    b.bright[i] +=
-        brightness * (halo * halo) * (1.0f + rays * static_cast<float>(cosine * (square / (square + Real(2)))));
+    if constexpr (kRock) {
+      const float rest = 1.0f - static_cast<float>(square);
+      const float inside = rest > 0.0f ? rest : 0.0f;
+      b.bright[i] += brightness * (inside * inside);
+    }
   }
+}
+
+/// Whether a feature that ends at reach from its centre touches a chunk.
+TERRANE_INLINE bool chunkReaches(const Block& b, std::size_t chunk, const double* center, double reach) {
+  const double* q = b.chunkCenter[chunk];
+  const double dx = q[0] - center[0], dy = q[1] - center[1], dz = q[2] - center[2];
+  const double limit = reach + b.chunkRadius[chunk];
+  return dx * dx + dy * dy + dz * dz <= limit * limit;
 }
 
 template <class Real, FeatureStage Stage>
@@ -160,11 +167,7 @@ void addFeatures(const FeatureRun& run, const Program& program, Block& b) {
     if (f.radius < program.minWavelength || !reaches(b, f.center, f.reach)) continue;
     const Shape<Real> shape = shapeOf<Real>(f, program);
     for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
-      const double* q = b.chunkCenter[chunk];
-      const double dx = q[0] - f.center[0], dy = q[1] - f.center[1], dz = q[2] - f.center[2];
-      const double limit = f.reach + b.chunkRadius[chunk];
-      if (dx * dx + dy * dy + dz * dz > limit * limit) continue;
-      addFeatureToChunk<Real, Stage>(f, shape, b, chunk * kChunk);
+      if (chunkReaches(b, chunk, f.center, f.reach)) addFeatureToChunk<Real, Stage>(f, shape, b, chunk * kChunk);
     }
   }
 }
@@ -179,6 +182,42 @@ void addRun(const FeatureRun& run, const Program& program, Block& b) {
                           : addFeatures<float, FeatureStage::YoungCrater>(run, program, b);
     case FeatureStage::Rock:
       return addFeatures<float, FeatureStage::Rock>(run, program, b);
+  }
+}
+
+/// Bright towards the crater, with five rays.
+void addHaloToChunk(const Halo& h, float shown, Block& b, std::size_t begin) {
+  const double cx = h.center[0], cy = h.center[1], cz = h.center[2];
+  const float ax = static_cast<float>(h.axis1[0]), ay = static_cast<float>(h.axis1[1]),
+              az = static_cast<float>(h.axis1[2]);
+  const float bx = static_cast<float>(h.axis2[0]), by = static_cast<float>(h.axis2[1]),
+              bz = static_cast<float>(h.axis2[2]);
+  const float inverse = static_cast<float>(1.0 / h.radius), brightness = h.brightness * shown, rays = h.rays;
+  constexpr float kInverseHaloSquared = static_cast<float>(1 / (kHaloRadii * kHaloRadii));
+  for (std::size_t i = begin; i < begin + kChunk; ++i) {
+    const float dx = static_cast<float>(b.x[i] - cx) * inverse, dy = static_cast<float>(b.y[i] - cy) * inverse,
+                dz = static_cast<float>(b.z[i] - cz) * inverse;
+    const float square = (dx * dx + dy * dy) + dz * dz;
+    const float along = (dx * ax + dy * ay) + dz * az, across = (dx * bx + dy * by) + dz * bz;
+    const float inverseRange = 1.0f / __builtin_sqrtf((along * along + across * across) + 1e-12f);
+    const float c = along * inverseRange, s = across * inverseRange;
+    const float c2 = c * c - s * s, s2 = 2.0f * c * s;
+    const float c4 = c2 * c2 - s2 * s2, s4 = 2.0f * c2 * s2;
+    const float c5 = c4 * c - s4 * s;
+    const float rest = 1.0f - square * kInverseHaloSquared;
+    const float halo = rest > 0.0f ? rest : 0.0f;
+    b.bright[i] += brightness * (halo * halo) * (1.0f + rays * (c5 * (square / (square + 2.0f))));
+  }
+}
+
+void addHalos(const Program& program, Block& b) {
+  for (std::size_t k = 0; k < program.haloCount; ++k) {
+    const Halo& h = program.halos[k];
+    const double shown = shownShare(kHaloRadii * h.radius, program.minWavelength);
+    if (shown <= 0 || !reaches(b, h.center, h.reach)) continue;
+    for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
+      if (chunkReaches(b, chunk, h.center, h.reach)) addHaloToChunk(h, static_cast<float>(shown), b, chunk * kChunk);
+    }
   }
 }
 

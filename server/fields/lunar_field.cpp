@@ -207,9 +207,7 @@ void LunarField::makeLandmarks(FeatureTables& features) {
     const std::uint64_t h = mixHash(static_cast<std::uint64_t>(row.diameterKm * 4096) ^ 0x5bd1e995u);
     Feature f = makeCrater(row.direction, radius_, diameter, row.youth > 0 ? 0.05 : 0.35, h);
     if (row.youth > 0) {
-      f.brightness = static_cast<float>(0.05 * row.youth);
-      f.reach = kHaloRadii * f.radius * (1 + 1e-5);
-      f.inverseHaloSquared = static_cast<float>(1 / (kHaloRadii * kHaloRadii));
+      features.landmarkHalos.push_back(makeHalo(f, 0.05 * row.youth, 0));  // its rays are a system of their own
       RaySystem r{};
       for (int a = 0; a < 3; ++a) {
         r.center[a] = f.center[a];
@@ -308,10 +306,12 @@ class LunarField::Evaluation {
   }
 
   void gather(const PointSet& points) {
-    const std::span<const FeatureRun> runs =
-        scratch_.gathering.runs(field_.features_, points, minWavelength_, program_.reliefInDouble);
-    program_.runs = runs.data();
-    program_.runCount = runs.size();
+    const GatheredFeatures gathered =
+        scratch_.gathering.near(field_.features_, points, minWavelength_, program_.reliefInDouble);
+    program_.runs = gathered.runs.data();
+    program_.runCount = gathered.runs.size();
+    program_.halos = gathered.halos.data();
+    program_.haloCount = gathered.halos.size();
   }
 
   void evaluateBlock(std::span<const std::size_t> indices, bool gathered) {

@@ -13,7 +13,8 @@
 // regolith: fractal noise whose slopes grow slowly towards small scales, rougher in some places than in others.
 //
 // Noise is shown from a wavelength of two cells on; craters and rocks from a radius of two cells on, first in part
-// (shownShare, lunar_program.h), so that none is cut where levels meet.
+// (shownShare, lunar_program.h), so that none is cut where levels meet; halos by their own radius, wide as they are, so
+// that what is a bright spot to one level is none to the next.
 //
 // Noise below 8 km, craters below 1 km and rocks are computed in float32 relative to their cell or centre, the rest in
 // double (at levels with cells under 2 m): no rounding step above some hundredths of a millimetre there. Every SIMD

@@ -113,6 +113,7 @@ void kEvaluate(const Program& program, Block& block) noexcept {
   for (std::size_t k = 0; k < program.regolithCount; ++k)
     addRegolith(program.regolith[k], program.footprint, block, modulator);
   for (std::size_t k = 0; k < program.runCount; ++k) addRun(program.runs[k], program, block);
+  addHalos(program, block);
   for (std::size_t k = 0; k < program.rayCount; ++k) {
     if (reaches(block, program.rays[k].center, program.rays[k].reach)) addRays(program.rays[k], block);
   }

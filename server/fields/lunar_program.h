@@ -74,16 +74,25 @@ struct Feature {
   double center[3];
   double axis1[3], axis2[3];  ///< tangent frame
   double radius;
-  double heightReach, reach;  ///< metres (chord); beyond: no height; no reflectance either
-  double apex, rise;          ///< bowl = apex + rise * s, s = (distance / radius)^2
-  double floor, floorBlend;   ///< flat floor
-  double rim, rimBlend;       ///< rim height; roundness of the crest
-  double peak;                ///< central peak (crater), height (rock)
+  double reach;              ///< metres (chord); nothing beyond
+  double apex, rise;         ///< bowl = apex + rise * s, s = (distance / radius)^2
+  double floor, floorBlend;  ///< flat floor
+  double rim, rimBlend;      ///< rim height; roundness of the crest
+  double peak;               ///< central peak (crater), height (rock)
   double lobeCos[kLobes], lobeSin[kLobes];
-  float brightness, inverseHaloSquared, rays;
+  float brightness;  ///< of a rock, over its surroundings
+};
+
+/// Bright ground around a young crater, with rays: reflectance only.
+struct Halo {
+  double center[3];
+  double axis1[3], axis2[3];  ///< the crater's tangent frame
+  double radius, reach;       ///< of the crater; metres (chord) beyond which there is nothing
+  float brightness, rays;
 };
 
 inline constexpr double kApronRadii = 2.2;          ///< ejecta end here, in crater radii
+inline constexpr double kHaloRadii = 4.5;           ///< halos of young craters end here
 inline constexpr double kPeakRadiusSquared = 0.06;  ///< central peak, in crater radii squared
 
 /// How much of a feature of this radius a level shows whose shortest wavelength is minWavelength: nothing up to that
@@ -116,7 +125,8 @@ struct FeatureRun {
 
 struct Program {
   double radius;
-  double minWavelength;  ///< metres: features of smaller radii are left out, of somewhat larger ones shown in part
+  double minWavelength;  ///< metres: features and halos of smaller radii are left out, of somewhat larger ones shown in
+                         ///< part
   double footprint;      ///< metres: gradients and reflectance are averaged over this far; 0 for none
   NoiseGroup relief;     ///< two sums: relief and lava
   bool reliefInDouble;
@@ -130,6 +140,8 @@ struct Program {
   std::size_t rayCount;
   const FeatureRun* runs;
   std::size_t runCount;
+  const Halo* halos;
+  std::size_t haloCount;
   double lavaTop, lavaFloor, lavaBlend;
   double clampLow, clampHigh, clampBlend;
   double mareSmoothing;  ///< regolith in full mare is scaled by 1 - this

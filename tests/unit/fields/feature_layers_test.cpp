@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "server/fields/feature_layers.h"
@@ -51,7 +52,7 @@ TEST(FeatureLayers, NoTwoBowlsOfALayerOverlapAndAtMostFourFeaturesTouchAPoint) {
         const glm::dvec3 p =
             glm::normalize(d * kMoonRadius + layer.largestDiameter() * randomDirection(random)) * kMoonRadius;
         std::size_t touching = 0;
-        for (const Feature& f : features) touching += glm::distance(centerOf(f), p) < f.heightReach;
+        for (const Feature& f : features) touching += glm::distance(centerOf(f), p) < f.reach;
         most = std::max(most, touching);
         ASSERT_LE(touching, 4u);
       }
@@ -104,6 +105,37 @@ TEST(FeatureLayers, SmallLayersAreGatheredTheSameFromEveryBall) {
       ASSERT_EQ(narrow.size(), expected) << "exponent " << layer.exponent;
     }
   }
+}
+
+TEST(FeatureLayers, HalosAreThoseOfTheYoungestCratersFromEveryBall) {
+  std::mt19937_64 random(11);
+  std::size_t found = 0;
+  for (const FeatureLayer& layer : crowdedLayers()) {
+    for (int i = 0; i < 10; ++i) {
+      const glm::dvec3 d = randomDirection(random), at = d * kMoonRadius;
+      const double size = layer.largestDiameter(), ball = 8 * size;
+      const glm::dvec3 inside = glm::normalize(at + 2 * size * randomDirection(random)) * kMoonRadius;
+      const double center[3] = {at.x, at.y, at.z}, nearCenter[3] = {inside.x, inside.y, inside.z};
+      std::vector<Halo> wide, narrow;
+      std::vector<Feature> craters;
+      gatherHalos(layer, kMoonRadius, center, ball, wide);
+      gatherHalos(layer, kMoonRadius, nearCenter, size, narrow);
+      gather(layer, at, ball, craters);
+      std::erase_if(craters, [&](const Feature& f) { return glm::distance(centerOf(f), at) > ball; });
+      std::size_t expected = 0;
+      for (const Halo& h : wide) {
+        const glm::dvec3 middle(h.center[0], h.center[1], h.center[2]);
+        expected += glm::distance(middle, inside) <= size + h.reach;
+        ASSERT_GT(h.brightness, 0.0f);
+        const auto around = [&](const Feature& f) { return centerOf(f) == middle && f.radius == h.radius; };
+        ASSERT_EQ(std::ranges::count_if(craters, around), glm::distance(middle, at) <= ball ? 1 : 0);
+      }
+      ASSERT_EQ(narrow.size(), expected) << "exponent " << layer.exponent;
+      ASSERT_TRUE(wide.empty() || layer.hasHalos());
+      found += wide.size();
+    }
+  }
+  EXPECT_GT(found, 500u);
 }
 
 TEST(FeatureLayers, FreshCratersHaveThePublishedDepths) {
