@@ -29,13 +29,14 @@ struct Cost {
 
 // Frames with and without the effect, turn about, so that whatever else the machine does falls on both.
 Result<Cost> measure(ViewSession& session, EffectKind kind) {
-  const std::vector<EffectCall>& all = session.scene().effects;
+  const std::vector<EffectCall> all = session.effects();
   std::vector<EffectCall> others;
   std::copy_if(all.begin(), all.end(), std::back_inserter(others),
                [&](const EffectCall& call) { return call.kind != kind; });
-  auto with = TileRenderer::create(all);
+  const RendererOptions options{.bodyRadiusMeters = session.body().selection.radiusMeters};
+  auto with = TileRenderer::create(all, options);
   if (!with) return with.error();
-  auto without = TileRenderer::create(others);
+  auto without = TileRenderer::create(others, options);
   if (!without) return without.error();
   for (const DrawnTile& drawn : session.drawn())
     for (int level = std::max(0, drawn.path.level() - 1); level <= drawn.path.level(); ++level)  // with its parent
@@ -74,12 +75,16 @@ std::string explainEffects(ViewSession& session) {
   std::string text =
       fmt::format("scene {}, body {}: {} tiles drawn, {} above the sphere\n", scene.name, session.body().name,
                   session.drawn().size(), lengthText(session.pose().altitudeMeters));
+  const auto names = [](const std::vector<EffectCall>& calls, EffectKind kind) {
+    return std::any_of(calls.begin(), calls.end(), [kind](const EffectCall& call) { return call.kind == kind; });
+  };
   for (const EffectRow& row : effectTable()) {
-    const bool on = std::any_of(scene.effects.begin(), scene.effects.end(),
-                                [&](const EffectCall& call) { return call.kind == row.kind; });
-    text += fmt::format("effect {}: {}\n  shows  {}\n  needs  {}\n  why    the scene {}\n  costs  {}\n", row.name,
+    const bool on = names(session.effects(), row.kind), leftOut = !on && names(scene.effects, row.kind);
+    text += fmt::format("effect {}: {}\n  shows  {}\n  needs  {}\n  why    {}\n  costs  {}\n", row.name,
                         on ? "on" : "off", row.summary, row.needs,
-                        on ? fmt::format("names it: [effects.{}]", row.name) : "does not name it",
+                        on        ? fmt::format("the scene names it: [effects.{}]", row.name)
+                        : leftOut ? fmt::format("--without {}", row.name)
+                                  : "the scene does not name it",
                         costText(session, row, on));
   }
   text += "constructed";

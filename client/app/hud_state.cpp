@@ -73,7 +73,7 @@ void describeSession(const ViewSession& session, const ViewOptions& options, Run
   statistics.server = options.serverUrl;
   statistics.scene = session.scene().name;
   statistics.body = session.body().name;
-  for (const EffectCall& effect : session.scene().effects) statistics.effects.emplace_back(effectRow(effect.kind).name);
+  for (const EffectCall& effect : session.effects()) statistics.effects.emplace_back(effectRow(effect.kind).name);
   statistics.constructed = constructionCounts();
 }
 

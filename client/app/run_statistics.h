@@ -59,7 +59,7 @@ struct RunStatistics {
   double heightAboveGroundMeters = -1;  ///< -1: not known
   int widthPixels = 0, heightPixels = 0;
   std::string server, scene, body;
-  std::vector<std::string> effects;                      ///< that the scene names
+  std::vector<std::string> effects;                      ///< that the scene names, less those left out
   std::vector<std::pair<std::string, int>> constructed;  ///< by name
   std::vector<PointStatistics> points;
 };

@@ -65,6 +65,7 @@ struct RawOptions {
   std::string size = "1280x720", placement = "auto", samples = "auto", cache, cacheBudget = "512MiB",
               memoryBudget = "128MiB", bandwidth = "0";
   int latencyMs = 0;
+  std::vector<std::string> without;
   double fieldOfViewDegrees = 50;
 };
 
@@ -168,6 +169,25 @@ void declarePictureOptions(CLI::App& app, RawOptions& raw) {
          "More than the driver has are the most that it has")
       ->type_name("N|auto|off")
       ->capture_default_str();
+  app.add_option("--without", raw.without,
+                 "Leave out this effect of the scene, as if it did not name it: to compare. May be given several times")
+      ->type_name("EFFECT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+Result<std::vector<EffectKind>> parseEffects(const std::vector<std::string>& names) {
+  std::vector<EffectKind> kinds;
+  for (const std::string& name : names) {
+    const auto kind = findEffect(name);
+    if (!kind) {
+      std::string known;
+      for (const EffectRow& row : effectTable()) known += (known.empty() ? "" : ", ") + std::string(row.name);
+      return flagError("--without", fmt::format("{} is no effect: there are {}", quotedForMessage(name), known));
+    }
+    kinds.push_back(*kind);
+  }
+  return kinds;
 }
 
 Result<std::optional<int>> parseSamples(std::string_view text) {
@@ -226,6 +246,9 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   const auto samples = parseSamples(raw.samples);
   if (!samples) return samples.error();
   o.samples = *samples;
+  auto without = parseEffects(raw.without);
+  if (!without) return without.error();
+  o.without = std::move(*without);
   for (const auto& range :
        {checkRange("--fov", raw.fieldOfViewDegrees, 1, 150), checkRange("--error", o.errorPixels, 0.1, 100),
         checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e6),

@@ -12,6 +12,7 @@
 #include "client/net/simulated_link.h"
 #include "client/render/tile_renderer.h"
 #include "common/result.h"
+#include "common/scene/effects.h"
 #include "common/view/camera.h"
 
 namespace terrane {
@@ -29,6 +30,7 @@ struct ViewOptions {
   double frameBudgetMs = 0;            ///< 0: off
   std::optional<Placement> placement;  ///< none: what the self-test of the GPU chose
   std::optional<int> samples;          ///< a pixel; 1 is no multisampling; none: what suits the renderer
+  std::vector<EffectKind> without;     ///< effects to leave out of the scene's
   bool headless = false, settle = false, hud = false, explain = false;
   std::string captureFile;  ///< "%d" in it: one picture for each point of the flight
   std::string statsFile;

@@ -119,10 +119,11 @@ Result<bool> ViewSession::ready() {
     return makeError(ErrorKind::InvalidArgument, "--body",
                      fmt::format("the scene \"{}\" has no \"{}\": it has {}", scene->name, s.options.body, names));
   }
-  auto renderer = TileRenderer::create(scene->effects);
+  const std::size_t body = s.options.body.empty() ? 0 : static_cast<std::size_t>(found - scene->bodies.begin());
+  auto renderer = TileRenderer::create(effects(), {.bodyRadiusMeters = scene->bodies[body].selection.radiusMeters});
   if (!renderer) return renderer.error();
   s.renderer = std::move(*renderer);
-  s.stream->selectBody(s.options.body.empty() ? 0 : static_cast<std::size_t>(found - scene->bodies.begin()));
+  s.stream->selectBody(body);
   drawSettings.placement = s.options.placement.value_or(s.renderer->selfTest().chosen);
   drawSettings.samples = s.options.samples.value_or(s.renderer->samplesByDefault());
   return true;
@@ -130,6 +131,13 @@ Result<bool> ViewSession::ready() {
 
 const SceneInfo& ViewSession::scene() const { return *state_->stream->scene(); }
 const BodyInfo& ViewSession::body() const { return *state_->stream->body(); }
+
+std::vector<EffectCall> ViewSession::effects() const {
+  std::vector<EffectCall> calls = scene().effects;
+  const std::vector<EffectKind>& without = state_->options.without;
+  std::erase_if(calls, [&](const EffectCall& call) { return std::ranges::find(without, call.kind) != without.end(); });
+  return calls;
+}
 
 // Once for each effect, whichever scene names it.
 void ViewSession::State::nameUnknownEffects() {

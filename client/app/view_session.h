@@ -44,6 +44,8 @@ class ViewSession {
   Result<bool> ready();
   const SceneInfo& scene() const;
   const BodyInfo& body() const;
+  /// The scene's, less those that the options leave out.
+  std::vector<EffectCall> effects() const;
 
   /// The camera of a pose, at a picture size. aboveGround: the pose's altitude counts from the ground as far as it is
   /// known.

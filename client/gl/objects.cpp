@@ -135,10 +135,17 @@ void VertexArray::attach(const Buffer& vertices, std::size_t stride, std::span<c
     if (attribute.conversion == Conversion::Integer) {
       glVertexAttribIPointer(attribute.location, attribute.components, glType(attribute.type), glStride, offset);
     } else {
-      glVertexAttribPointer(attribute.location, attribute.components, glType(attribute.type), GL_FALSE, glStride,
+      const GLboolean normalized = attribute.conversion == Conversion::Normalized ? GL_TRUE : GL_FALSE;
+      glVertexAttribPointer(attribute.location, attribute.components, glType(attribute.type), normalized, glStride,
                             offset);
     }
   }
+}
+
+void VertexArray::attachInstances(const Buffer& instances, std::size_t stride,
+                                  std::span<const VertexAttribute> attributes) {
+  attach(instances, stride, attributes);
+  for (const VertexAttribute& attribute : attributes) glVertexAttribDivisor(attribute.location, 1);
 }
 
 void VertexArray::attachIndices(const Buffer& indices) {

@@ -74,7 +74,7 @@ class BufferWords {
 };
 
 enum class Component : std::uint8_t { U8, U16, I16, I32, F32 };
-enum class Conversion : std::uint8_t { Integer, Float };
+enum class Conversion : std::uint8_t { Integer, Normalized, Float };
 
 struct VertexAttribute {
   unsigned location = 0;
@@ -91,6 +91,8 @@ class VertexArray {
   static void unbind();
   /// Attributes that come from one interleaved buffer. Leaves the array bound.
   void attach(const Buffer& vertices, std::size_t stride, std::span<const VertexAttribute> attributes);
+  /// The same, one of each for an instance.
+  void attachInstances(const Buffer& instances, std::size_t stride, std::span<const VertexAttribute> attributes);
   /// Leaves the array bound.
   void attachIndices(const Buffer& indices);
 

@@ -150,15 +150,15 @@ void RenderTarget::bindColorTexture(int unit) const { bindTexture(GL_TEXTURE_2D,
 
 void RenderTarget::bindWindow() { glBindFramebuffer(GL_FRAMEBUFFER, 0); }
 
-void RenderTarget::blitTo(unsigned framebuffer, int framebufferWidthPixels, int framebufferHeightPixels) const {
-  const bool sameSize = framebufferWidthPixels == widthPixels_ && framebufferHeightPixels == heightPixels_;
+void RenderTarget::blitToWindow(int windowWidthPixels, int windowHeightPixels) const {
+  const bool sameSize = windowWidthPixels == widthPixels_ && windowHeightPixels == heightPixels_;
   // By way of the resolved colour: straight from several samples GL allows neither scaling nor another format.
   bindForReading();
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glBlitFramebuffer(0, 0, widthPixels_, heightPixels_, 0, 0, framebufferWidthPixels, framebufferHeightPixels,
-                    GL_COLOR_BUFFER_BIT, sameSize ? GL_NEAREST : GL_LINEAR);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, framebufferWidthPixels, framebufferHeightPixels);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glBlitFramebuffer(0, 0, widthPixels_, heightPixels_, 0, 0, windowWidthPixels, windowHeightPixels, GL_COLOR_BUFFER_BIT,
+                    sameSize ? GL_NEAREST : GL_LINEAR);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, windowWidthPixels, windowHeightPixels);
 }
 
 std::vector<std::uint8_t> RenderTarget::readRed() const {

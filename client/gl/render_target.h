@@ -43,11 +43,7 @@ class RenderTarget {
   /// Binds the window's own framebuffer again.
   static void bindWindow();
   /// Copies the colour to the window's framebuffer, scaled if the sizes differ, and leaves that bound.
-  void blitToWindow(int windowWidthPixels, int windowHeightPixels) const {
-    blitTo(0, windowWidthPixels, windowHeightPixels);
-  }
-  /// The same to any framebuffer.
-  void blitTo(unsigned framebuffer, int framebufferWidthPixels, int framebufferHeightPixels) const;
+  void blitToWindow(int windowWidthPixels, int windowHeightPixels) const;
   /// Red bytes, bottom row first.
   std::vector<std::uint8_t> readRed() const;
 

@@ -19,11 +19,8 @@ class DetailEffect final : public Effect {
     }
   }
 
-  Result<std::unique_ptr<EffectPass>> makePass(const EffectList& all,
-                                               const gl::Capabilities& capabilities) const override {
-    auto pass = DetailPass::create(strength_, all, capabilities);
-    if (!pass) return pass.error();
-    return std::unique_ptr<EffectPass>(std::move(*pass));
+  Result<std::unique_ptr<EffectPass>> makePass(const PassContext& context) const override {
+    return makeDetailPass(strength_, context);
   }
 
  private:

@@ -4,43 +4,70 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 
-#include "client/gl/render_target.h"
-#include "client/render/clip_rows.h"
-#include "client/render/gpu_tiles.h"
+#include "client/gl/depth_copy.h"
+#include "client/gl/objects.h"
+#include "client/render/ground_position.h"
 #include "common/numerics/octave_coordinates.h"
 
 namespace terrane {
+namespace {
 
-Result<std::unique_ptr<DetailPass>> DetailPass::create(const DetailStrength& strength, const EffectList& effects,
-                                                       const gl::Capabilities& capabilities) {
-  auto pass = std::unique_ptr<DetailPass>(new DetailPass(strength, capabilities));
-  auto program = pass->build(effects, false);
-  if (!program) return program.error();
-  pass->program_.emplace(std::move(*program));
-  return pass;
-}
+class DetailPass final : public EffectPass {
+ public:
+  DetailPass(const DetailStrength& strength, const EffectList& effects, gl::Program program)
+      : strength_(strength), effects_(effects), program_(std::move(program)) {}
 
-Result<gl::Program> DetailPass::build(const EffectList& effects, bool multisampled) const {
+  PassStats draw(const Camera& camera, std::span<const TileDraw> /*tiles*/) override {
+    if (!depth_.take(camera.widthPixels, camera.heightPixels)) return {};
+    program_.use();
+    depth_.bind();
+    setGroundPosition(program_, camera);
+    setDetailOctaves(program_, camera);
+    setUniform(program_.uniform("cameraBody"), glm::vec3(camera.positionBody));
+    setUniform(program_.uniform("finestPixels"), strength_.finestPixels);
+    setUniform(program_.uniform("firstExponent"), kFinestDetailExponent);
+    setUniform(program_.uniform("octaveSlopes"), strength_.slopes);
+    setUniform(program_.uniform("octaveMottles"), strength_.mottles);
+    for (const auto& effect : effects_) effect->setUniforms(program_);
+    multiplyPicture();
+    return {.triangles = 1, .drawCalls = 1};
+  }
+
+  std::size_t gpuBytes() const noexcept override { return depth_.bytes(); }
+
+ private:
+  void multiplyPicture() const {
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_DST_COLOR, GL_SRC_COLOR);  // twice the product
+    glDisable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    noVertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+  }
+
+  DetailStrength strength_;
+  const EffectList& effects_;
+  gl::Program program_;
+  gl::VertexArray noVertices_;
+  gl::DepthCopy depth_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<EffectPass>> makeDetailPass(const DetailStrength& strength, const PassContext& context) {
   gl::ProgramSpec spec;
   spec.vertexFile = "screen.vert.glsl";
   spec.fragmentFile = "detail.frag.glsl";
-  spec.defines = definesOf(effects);
+  spec.defines = definesOf(context.effects);
   spec.defines.push_back(fmt::format("OCTAVE_COUNT {}", kDetailOctaves));
   spec.defines.push_back(fmt::format("DISPLAY_GAMMA {:.4f}", kDisplayGamma));
-  if (multisampled) spec.defines.emplace_back("MULTISAMPLED");
-  return gl::Program::build(spec, capabilities_);
-}
-
-void setGroundPosition(const gl::Program& program, const GroundPicture& picture) {
-  const Camera& camera = picture.camera;
-  constexpr int kUnit = 0;
-  picture.target.bindDepthTexture(kUnit);
-  setUniform(program.uniform("groundDepth"), kUnit);
-  setUniform(program.uniform("rays"), glm::mat3(screenRays(camera)));
-  setUniform(program.uniform("pictureSize"), glm::vec2(camera.widthPixels, camera.heightPixels));
-  setUniform(program.uniform("nearMeters"), static_cast<float>(camera.nearMeters));
+  auto program = gl::Program::build(spec, context.capabilities);
+  if (!program) return program.error();
+  return std::unique_ptr<EffectPass>(std::make_unique<DetailPass>(strength, context.effects, std::move(*program)));
 }
 
 void setDetailOctaves(const gl::Program& program, const Camera& camera) {
@@ -54,40 +81,6 @@ void setDetailOctaves(const gl::Program& program, const Camera& camera) {
   }
   setUniform(program.uniform("octaves"), octaves);
   setUniform(program.uniform("octaveCells"), cells);
-}
-
-void DetailPass::draw(const GroundPicture& picture) {
-  const bool multisampled = picture.target.samples() > 1;
-  std::optional<gl::Program>& program = multisampled ? multisampledProgram_ : program_;
-  if (!program) {
-    auto built = build(picture.effects, multisampled);
-    if (!built) {
-      if (!std::exchange(reported_, true)) fmt::print(stderr, "effect detail: {}\n", built.error().text());
-      return;
-    }
-    program.emplace(std::move(*built));
-  }
-  picture.target.bindColorOnly();
-  program->use();
-  setGroundPosition(*program, picture);
-  setDetailOctaves(*program, picture.camera);
-  setUniform(program->uniform("cameraBody"), glm::vec3(picture.camera.positionBody));
-  setUniform(program->uniform("finestPixels"), strength_.finestPixels);
-  setUniform(program->uniform("firstExponent"), kFinestDetailExponent);
-  setUniform(program->uniform("octaveSlopes"), strength_.slopes);
-  setUniform(program->uniform("octaveMottles"), strength_.mottles);
-  for (const auto& effect : picture.effects) effect->setUniforms(*program);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_DST_COLOR, GL_SRC_COLOR);  // twice the product
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-  noVertices_.bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  gl::VertexArray::unbind();
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  glBlendFunc(GL_ONE, GL_ZERO);
-  glDisable(GL_BLEND);
-  glUseProgram(0);
-  picture.target.bind();
 }
 
 }  // namespace terrane

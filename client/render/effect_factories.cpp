@@ -4,17 +4,21 @@
 #include <array>
 #include <string>
 
+#include "client/render/effect_pass.h"
+
 namespace terrane {
 namespace {
 
 using Factory = std::unique_ptr<const Effect> (*)(const EffectCall&);
 
 // In the order of EffectKind; an effect of the server has none.
-constexpr std::array<Factory, kEffectKindCount> kFactories{&makeSunEffect, &makeDetailEffect};
+constexpr std::array<Factory, kEffectKindCount> kFactories{&makeSunEffect, &makeDetailEffect, &makeDustEffect};
 static_assert(std::ranges::none_of(kFactories, [](Factory factory) { return factory == nullptr; }),
               "every kind of effect has its factory");
 
 }  // namespace
+
+Result<std::unique_ptr<EffectPass>> Effect::makePass(const PassContext&) const { return std::unique_ptr<EffectPass>(); }
 
 EffectList makeEffects(const std::vector<EffectCall>& calls) {
   EffectList effects;

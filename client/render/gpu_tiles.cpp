@@ -124,6 +124,7 @@ std::size_t GpuTiles::upload(const Tile& tile) {
   auto uploaded = std::make_unique<GpuTile>();
   std::size_t bytesTaken = 0;
   uploaded->metadata = tile.metadata;
+  uploaded->serial = ++uploads_;
   uploaded->vertexCount = tile.mesh.vertexCount();
   uploaded->layout = layoutFor(tile, bytesTaken);
   uploaded->vertices.upload(gl::BufferTarget::Vertices, gl::bytesOf(packVertices(tile, uploaded->layout->order)),

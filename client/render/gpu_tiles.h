@@ -41,6 +41,7 @@ struct MeshLayout {
 
 struct GpuTile {
   TileMetadata metadata;
+  std::uint64_t serial = 0;  ///< of the upload, from 1 on: no two are alike
   std::size_t vertexCount = 0;
   gl::Buffer vertices;
   gl::VertexArray array;
@@ -81,6 +82,7 @@ class GpuTiles {
   struct FingerprintHash {
     std::size_t operator()(const Fingerprint& f) const noexcept { return static_cast<std::size_t>(f.low); }
   };
+  std::uint64_t uploads_ = 0;
   std::unordered_map<FacePath, std::unique_ptr<GpuTile>> tiles_;
   std::unordered_map<Fingerprint, std::weak_ptr<const MeshLayout>, FingerprintHash> layouts_;
   std::unordered_map<int, std::weak_ptr<TileIndices>> grids_;  ///< by cells of an edge

@@ -11,16 +11,6 @@ constexpr int kBlockCells = 13;
 
 bool hasEdge(unsigned edges, Side side) { return ((edges >> static_cast<unsigned>(side)) & 1u) != 0; }
 
-/// Where the vertex at (i, j) is drawn: itself, or for an odd vertex of a coarser edge the even one before it. Taking
-/// always the one before keeps the triangles of both edges apart at a corner.
-int stitched(int cells, unsigned edges, int i, int j) {
-  const bool alongU = (j == 0 && hasEdge(edges, Side::VMin)) || (j == cells && hasEdge(edges, Side::VMax));
-  const bool alongV = (i == 0 && hasEdge(edges, Side::UMin)) || (i == cells && hasEdge(edges, Side::UMax));
-  if (alongU) i &= ~1;
-  if (alongV) j &= ~1;
-  return j * (cells + 1) + i;
-}
-
 template <class Index>
 IndexList uploaded(const std::vector<Index>& indices) {
   IndexList list;
@@ -46,6 +36,16 @@ std::vector<std::uint64_t> sortedTriangles(const std::vector<std::uint16_t>& ind
 
 }  // namespace
 
+int stitchedVertex(int cells, unsigned coarserEdges, int i, int j) noexcept {
+  const bool alongU =
+      (j == 0 && hasEdge(coarserEdges, Side::VMin)) || (j == cells && hasEdge(coarserEdges, Side::VMax));
+  const bool alongV =
+      (i == 0 && hasEdge(coarserEdges, Side::UMin)) || (i == cells && hasEdge(coarserEdges, Side::UMax));
+  if (alongU) i &= ~1;
+  if (alongV) j &= ~1;
+  return j * (cells + 1) + i;
+}
+
 std::vector<std::uint16_t> gridTriangles(int cells, unsigned coarserEdges) {
   std::vector<std::uint16_t> indices;
   indices.reserve(6 * static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells));
@@ -53,7 +53,7 @@ std::vector<std::uint16_t> gridTriangles(int cells, unsigned coarserEdges) {
     if (a == b || b == c || c == a) return;
     for (const int corner : {a, b, c}) indices.push_back(static_cast<std::uint16_t>(corner));
   };
-  const auto at = [&](int i, int j) { return stitched(cells, coarserEdges, i, j); };
+  const auto at = [&](int i, int j) { return stitchedVertex(cells, coarserEdges, i, j); };
   for (int blockJ = 0; blockJ < cells; blockJ += kBlockCells) {
     for (int blockI = 0; blockI < cells; blockI += kBlockCells) {
       for (int j = blockJ; j < std::min(blockJ + kBlockCells, cells); ++j) {

@@ -24,6 +24,10 @@ std::vector<std::uint16_t> skirtTriangles(int cells);
 /// exactly the triangles above.
 std::optional<std::vector<std::uint32_t>> verticesInGridOrder(const TileMesh& mesh, int cells);
 
+/// Where the vertex at (i, j) of the surface is drawn, by grid index: itself, or for an odd vertex of a coarser edge
+/// the even one before it. Taking always the one before keeps the triangles of both edges apart at a corner.
+int stitchedVertex(int cells, unsigned coarserEdges, int i, int j) noexcept;
+
 struct IndexList {
   gl::Buffer buffer;
   std::size_t count = 0;

@@ -33,6 +33,8 @@ const char* placementDefine(Placement placement) {
 
 }  // namespace
 
+float displayExposure() noexcept { return std::pow(kExposure * kColorScale, static_cast<float>(1 / kDisplayGamma)); }
+
 Result<TileProgram> TileProgram::build(const TileVariant& variant, const EffectList& effects,
                                        const gl::Capabilities& capabilities) {
   gl::ProgramSpec spec;
@@ -97,7 +99,7 @@ void TileProgram::begin(const Camera& camera, const EffectList& effects) {
   setUniform(cameraHigh_, position.hi);
   setUniform(cameraLow_, position.lo);
   if (variant_.purpose == TilePurpose::Shaded || variant_.purpose == TilePurpose::Shading) {
-    setUniform(exposure_, std::pow(kExposure * kColorScale, static_cast<float>(1 / kDisplayGamma)) / 255);
+    setUniform(exposure_, displayExposure() / 255);
     setTint(glm::vec3(1.0f));
     for (const auto& effect : effects) effect->setUniforms(program_);
   }

@@ -24,6 +24,9 @@ enum class TilePurpose : std::uint8_t {
 inline constexpr int kTilePurposeCount = 4;
 inline constexpr int kPlacementCount = 4;
 
+/// Light on the display of what reflects kColorScale in full light, on the display's curve.
+float displayExposure() noexcept;
+
 struct TileVariant {
   Placement placement = Placement::Integer;
   TilePurpose purpose = TilePurpose::Shaded;

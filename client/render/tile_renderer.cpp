@@ -12,6 +12,7 @@
 
 #include "client/gl/render_target.h"
 #include "client/render/coverage.h"
+#include "client/render/effect_pass.h"
 #include "client/render/gpu_self_test.h"
 #include "client/render/gpu_tiles.h"
 #include "client/render/tile_program.h"
@@ -107,6 +108,7 @@ struct TileRenderer::State {
   GpuTiles tiles;
   std::array<std::optional<TileProgram>, std::size_t{2} * kTilePurposeCount * kPlacementCount> programs;
   std::optional<RenderTarget> windowTarget, coverageTarget;
+  std::vector<std::unique_ptr<EffectPass>> passes;
   std::vector<float> scratch;
 
   /// Compiled when first asked for. Errors: Unsupported ("shader").
@@ -211,15 +213,21 @@ struct TileRenderer::State {
     DrawStats stats;
     stats.samples = gl::boundSamples();
     const TilePass pass(capabilities, settings.wireframe);
-    forEachTile(camera, nearestFirst(camera, list, settings.skirts), placement, TilePurpose::Shaded,
-                [&](const TileProgram& program, const TileDraw& draw) {
-                  if (settings.levelColors) program.setTint(levelTint(draw.tile->metadata.path.level()));
-                  TileIndices& indices = *draw.tile->layout->indices;
-                  stats.triangles += drawList(indices.surface(draw.coarserEdges));
-                  if (draw.skirts) stats.triangles += drawList(indices.skirts());
-                  stats.drawCalls += draw.skirts ? 2 : 1;
-                  ++stats.tiles;
-                });
+    const std::vector<TileDraw> ordered = nearestFirst(camera, list, settings.skirts);
+    forEachTile(camera, ordered, placement, TilePurpose::Shaded, [&](const TileProgram& program, const TileDraw& draw) {
+      if (settings.levelColors) program.setTint(levelTint(draw.tile->metadata.path.level()));
+      TileIndices& indices = *draw.tile->layout->indices;
+      stats.triangles += drawList(indices.surface(draw.coarserEdges));
+      if (draw.skirts) stats.triangles += drawList(indices.skirts());
+      stats.drawCalls += draw.skirts ? 2 : 1;
+      ++stats.tiles;
+    });
+    if (!settings.dust) return stats;
+    for (const auto& effectPass : passes) {
+      const PassStats drawn = effectPass->draw(camera, ordered);
+      stats.triangles += drawn.triangles;
+      stats.drawCalls += drawn.drawCalls;
+    }
     return stats;
   }
 };
@@ -232,13 +240,13 @@ Result<std::unique_ptr<TileRenderer>> TileRenderer::create(const std::vector<Eff
   if (!report) return report.error();
   state->selfTest = *report;
   state->effects = makeEffects(effects);
+  if (auto program = state->program({state->selfTest.chosen, TilePurpose::Shaded, false}); !program)
+    return program.error();
   for (const auto& effect : state->effects) {
-    auto pass = effect->makePass(state->effects, state->capabilities);
+    auto pass = effect->makePass({state->capabilities, state->selfTest, state->effects, options.bodyRadiusMeters});
     if (!pass) return pass.error();
     if (*pass) state->passes.push_back(std::move(*pass));
   }
-  if (auto program = state->program({state->selfTest.chosen, TilePurpose::Shaded, false}); !program)
-    return program.error();
   return std::unique_ptr<TileRenderer>(new TileRenderer(std::move(state)));
 }
 
@@ -258,7 +266,11 @@ int TileRenderer::samplesByDefault() const noexcept { return state_->capabilitie
 std::size_t TileRenderer::upload(const std::shared_ptr<const Tile>& tile) { return state_->tiles.upload(*tile); }
 void TileRenderer::remove(const FacePath& path) { state_->tiles.remove(path); }
 void TileRenderer::clear() { state_->tiles.clear(); }
-std::size_t TileRenderer::gpuBytes() const noexcept { return state_->tiles.bytes(); }
+std::size_t TileRenderer::gpuBytes() const noexcept {
+  std::size_t sum = state_->tiles.bytes();
+  for (const auto& pass : state_->passes) sum += pass->gpuBytes();
+  return sum;
+}
 
 DrawStats TileRenderer::draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings) {
   return draw(camera, asTheyAre(tiles), settings);
@@ -268,7 +280,7 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const DrawnTile> ti
   const Placement placement = usable(settings.placement);
   GLint framebuffer = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
-  if (framebuffer != 0 && state_->passes.empty()) {
+  if (framebuffer != 0) {
     glViewport(0, 0, camera.widthPixels, camera.heightPixels);
     return state_->drawTiles(camera, tiles, settings, placement);
   }
@@ -276,8 +288,7 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const DrawnTile> ti
   if (!provide(target, camera, TargetFormat::Rgba8, settings.samples)) return {};
   target->bind();
   const DrawStats stats = state_->drawTiles(camera, tiles, settings, placement);
-  for (const auto& pass : state_->passes) pass->draw({camera, *target, state_->effects});
-  target->blitTo(static_cast<unsigned>(framebuffer), camera.widthPixels, camera.heightPixels);
+  target->blitToWindow(camera.widthPixels, camera.heightPixels);
   return stats;
 }
 

@@ -35,6 +35,8 @@ struct DrawSettings {
   /// Draw every tile's skirts. Not needed where edges towards coarser tiles are morphed and stitched to them; a tile
   /// that cannot be (DrawnTile) is drawn with its skirts anyway.
   bool skirts = false;
+  /// Draw what effects put on the ground (dust), where the scene names them.
+  bool dust = true;
   /// A pixel, for smooth edges, where draw makes the target: with the window's own framebuffer bound.
   int samples = 1;
 };
@@ -42,6 +44,8 @@ struct DrawSettings {
 struct RendererOptions {
   /// Use nothing beyond GL 3.3 core whatever the context has: so that this path is tested on any driver.
   bool forceBaseline = false;
+  /// Of the body whose tiles are drawn. Without it nothing is put on the ground: its sizes would not be known.
+  double bodyRadiusMeters = 0;
 };
 
 struct DrawStats {
@@ -74,8 +78,8 @@ class TileRenderer {
 
   /// Draws into the current framebuffer (colour and depth cleared here). Tiles that were never uploaded are skipped;
   /// one that morphs needs its parent uploaded, or it is drawn as it is. The window's own framebuffer lacks the depth
-  /// precision, and effects with passes of their own read the depth: then draws into a RenderTarget of the camera's
-  /// size and copies it over (what is bound then has the camera's size and one sample a pixel).
+  /// precision: with that bound, draws into a RenderTarget of the camera's size and copies it over (the camera then has
+  /// the window's size).
   DrawStats draw(const Camera& camera, std::span<const DrawnTile> tiles, const DrawSettings& settings);
   /// The tiles as they are.
   DrawStats draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings);

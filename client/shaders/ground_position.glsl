@@ -1,10 +1,6 @@
-// The ground that a pixel shows, relative to the camera, body axes, metres, from the depth that the tiles left: near / w, 0 where there is
-// none. A float holds that depth to 2^-24 of itself at any distance, so a point lies within 2^-23 of its distance along its own ray.
-#ifdef MULTISAMPLED
-uniform sampler2DMS groundDepth;  // its first sample stands for the pixel
-#else
+// What a pixel shows, relative to the camera, body axes, metres, from the depth that was left there: near / w, 0 where there is
+// nothing. A float holds that depth to 2^-24 of itself at any distance, so a point lies within 2^-23 of its distance along its own ray.
 uniform sampler2D groundDepth;
-#endif
 uniform mat3 rays;           // from (x, y, 1), the screen being -1..1, to the point one metre ahead of the camera
 uniform vec2 pictureSize;    // pixels
 uniform float nearMeters;

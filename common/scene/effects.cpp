@@ -25,6 +25,13 @@ constexpr std::array kDetailParameters{
     ParameterSpec{"mottle", Quantity::Number, 0, 1, 0.05, "how much reflectance varies, as a share, in each octave"},
 };
 
+constexpr std::array kDustParameters{
+    ParameterSpec{"cover", Quantity::Number, 0, 0.05, 0.03,
+                  "share of the ground that the least octave of grains covers; each above it a quarter less"},
+    ParameterSpec{"smallest", Quantity::Length, 1e-5, 100, 0.0005, "least diameter of a grain"},
+    ParameterSpec{"largest", Quantity::Length, 1e-5, 100, 0.128, "greatest diameter of a grain"},
+};
+
 // In the order of EffectKind.
 constexpr std::array kEffects{
     EffectRow{EffectKind::Sun, "sun", "sunlight from one direction, with a night side", "surface normals of the tiles",
@@ -34,6 +41,11 @@ constexpr std::array kEffects{
               "the depth of the ground as a texture; the sun, or it only mottles",
               "one pass over the picture: three octaves of noise a pixel, whatever the number of triangles",
               EffectSide::Client, kDetailParameters},
+    EffectRow{EffectKind::Dust, "dust", "grains and pebbles that lie on the ground, solid, where near enough to see",
+              "the tiles' vertices; the sun for their shadows",
+              "three instanced meshes and a pass for shadows, a copy of the "
+              "depth buffer and an instance a grain in view; nothing where no grain would be a pixel wide",
+              EffectSide::Client, kDustParameters},
 };
 static_assert(kEffects.size() == kEffectKindCount, "every kind of effect has its row");
 static_assert(

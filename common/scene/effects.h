@@ -17,8 +17,8 @@
 
 namespace terrane {
 
-enum class EffectKind : std::uint8_t { Sun, Detail };
-inline constexpr int kEffectKindCount = 2;
+enum class EffectKind : std::uint8_t { Sun, Detail, Dust };
+inline constexpr int kEffectKindCount = 3;
 
 enum class EffectSide : std::uint8_t { Client, Server };
 

@@ -52,18 +52,20 @@ class Detail : public GlTest {
   }
 
   /// The settled tiles under this camera, with detail or without.
-  Image picture(const Camera& camera, DetailPass* detail) {
-    auto target = require(RenderTarget::create(camera.widthPixels, camera.heightPixels));
+  Image picture(const Camera& camera, EffectPass* detail, int samples = 1) {
+    auto target = require(RenderTarget::create(camera.widthPixels, camera.heightPixels, TargetFormat::Rgba8, samples));
     target.bind();
     renderer_->draw(camera, tiles_, {});
-    if (detail != nullptr) detail->draw({camera, target, effects_});
+    if (detail != nullptr) detail->draw(camera, {});
+    target.bindForReading();
     Image image = readFramebuffer(camera.widthPixels, camera.heightPixels);
     RenderTarget::bindWindow();
     return image;
   }
 
-  std::unique_ptr<DetailPass> pass(float finestPixels) {
-    return require(DetailPass::create(evenStrength(finestPixels), effects_, gl::detectCapabilities()));
+  std::unique_ptr<EffectPass> pass(float finestPixels) {
+    static const gl::Capabilities capabilities = gl::detectCapabilities();
+    return require(makeDetailPass(evenStrength(finestPixels), {capabilities, renderer_->selfTest(), effects_}));
   }
 
   std::unique_ptr<TileRenderer> renderer_;
@@ -94,7 +96,7 @@ TEST_F(Detail, AGrazingViewHoldsNoWavesThatItsPixelsCannotShow) {
   constexpr int kScale = 4;
   const Camera camera = cameraAt(2, -3, 1), fineCamera = cameraAt(2, -3, kScale);
   settle(camera);
-  const auto offAverage = [&](DetailPass* coarse, DetailPass* fine) {
+  const auto offAverage = [&](EffectPass* coarse, EffectPass* fine) {
     return rmsDifference(picture(camera, coarse), averaged(picture(fineCamera, fine), kScale));
   };
   const auto shipped = pass(2.5f), atFinerPixels = pass(2.5f * kScale), unfiltered = pass(0.1f),
@@ -150,19 +152,10 @@ TEST_F(Detail, ItShowsAtEveryScaleAndLeavesTheMeanAsItIs) {
 }
 
 TEST_F(Detail, WithSeveralSamplesAPixelItIsTheSameTexture) {
-  const std::vector<EffectCall> effects = shippedScene("moon").effects;
-  const auto renderer = makeRenderer(effects);
   const Camera camera = cameraAt(2, -30, 1);
-  for (const FacePath& path : settle(camera)) renderer->upload(moon().tile(path));
-  std::vector<Image> pictures;
-  for (const int samples : {1, 4}) {
-    auto target = require(RenderTarget::create(kWidth, kHeight));
-    target.bind();
-    renderer->draw(camera, tiles_, {.samples = samples});
-    pictures.push_back(readFramebuffer(kWidth, kHeight));
-    RenderTarget::bindWindow();
-  }
-  const double difference = rmsDifference(pictures[0], pictures[1]);
+  settle(camera);
+  const auto detail = pass(2.5f);
+  const double difference = rmsDifference(picture(camera, detail.get(), 1), picture(camera, detail.get(), 4));
   std::printf("RMS %.2f of 255 between 1 and 4 samples a pixel\n", difference);
   EXPECT_LT(difference, 6);
 }

@@ -50,6 +50,15 @@ TEST(ViewOptions, DefaultsAreThoseThatHelpStates) {
   EXPECT_DOUBLE_EQ(options.verticalFieldOfView, 50 * kDegrees);
 }
 
+TEST(ViewOptions, EffectsAreLeftOutByName) {
+  EXPECT_TRUE(parsed({}).without.empty());
+  EXPECT_EQ(parsed({"--without", "dust", "--without=sun"}).without,
+            (std::vector<EffectKind>{EffectKind::Dust, EffectKind::Sun}));
+  const Error error = refused({"--without", "snow"});
+  EXPECT_EQ(error.field, "--without");
+  EXPECT_NE(error.message.find("\"snow\" is no effect"), std::string::npos) << error.message;
+}
+
 TEST(ViewOptions, ACameraWestAndSouthOfTheOriginIsNoFlag) {
   const ViewOptions options = parsed({"--camera", "-20.5,-9.25,1e6,370e-1,-12.5"});
   ASSERT_TRUE(options.camera);

@@ -11,9 +11,11 @@
 #include <numbers>
 #include <unordered_set>
 
+#include "client/gl/depth_copy.h"
 #include "client/gl/render_target.h"
 #include "client/render/clip_rows.h"
 #include "client/render/detail_pass.h"
+#include "client/render/ground_position.h"
 #include "client/render/tile_renderer.h"
 #include "common/numerics/octave_coordinates.h"
 #include "common/view/level_transitions.h"
@@ -104,6 +106,7 @@ class SwimRun {
   std::unique_ptr<TileRenderer> renderer_;
   gl::Program program_;
   gl::VertexArray noVertices_;
+  gl::DepthCopy depth_;
   LevelTransitions transitions_;
   std::unordered_set<FacePath> there_;
   std::vector<DrawnTile> drawn_;
@@ -128,10 +131,12 @@ void SwimRun::advance() {
 void SwimRun::draw() {
   target_.bind();
   renderer_->draw(camera_, drawn_, {});
+  depth_.take(settings_.widthPixels, settings_.heightPixels);
   numbers_.bind();
   glViewport(0, 0, settings_.widthPixels, settings_.heightPixels);
   program_.use();
-  setGroundPosition(program_, {camera_, target_, {}});
+  depth_.bind();
+  setGroundPosition(program_, camera_);
   setDetailOctaves(program_, camera_);
   setUniform(program_.uniform("octave"), octave_);
   setUniform(program_.uniform("markedCell"), markedPlace_.cell);
