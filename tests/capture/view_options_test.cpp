@@ -83,6 +83,11 @@ TEST(ViewOptions, HeadlessSettlesUnlessItFliesOrCountsFrames) {
   EXPECT_TRUE(parsed({"--headless", "--flight", "orbit", "--settle"}).settle);
 }
 
+TEST(ViewOptions, FramesSpreadOverAFlightUnlessTheirStepIsGiven) {
+  EXPECT_FALSE(parsed({"--headless", "--flight", "ground", "--frames", "9"}).stepGiven);
+  EXPECT_TRUE(parsed({"--headless", "--flight", "ground", "--frames", "9", "--step", "0.5"}).stepGiven);
+}
+
 TEST(ViewOptions, OnlyAWindowHasADiskCacheOfItself) {
   EXPECT_EQ(parsed({}, &cacheHome).cacheFile, "/cache/terrane/tiles.sqlite");
   EXPECT_TRUE(parsed({}, &cacheHome).cacheIsDefault);
