@@ -35,7 +35,7 @@ class FlightCoverage : public testing::TestWithParam<const char*> {
     more.insert(more.end(),
                 {"--server", server_.url, "--headless", "--size", "320x180", "--camera=-16.4018,21.6039,1e7",
                  "--flight", flight, "--frames", std::to_string(frameCount()), "--stats", stats});
-    const auto outcome = runView(more, std::chrono::seconds(120 + frameCount()));
+    const auto outcome = runView(more, std::chrono::seconds(240 + 2 * frameCount()));
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     const std::string json = readFile(stats);
     fmt::print("{} frames, {} requests, {} bytes, {} uncovered pixels\n", jsonNumber(json, "framesDrawn"),
