@@ -11,9 +11,11 @@ class LevelTransitions::Wanted {
   explicit Wanted(std::span<const FacePath> tiles) : tiles_(tiles.begin(), tiles.end()) {
     for (const FacePath& tile : tiles_) {
       leaves_.insert(tile);
-      for (int level = 0; level < tile.level(); ++level) {
+      // Above a tile that knows of one as deep, all know.
+      for (int level = tile.level() - 1; level >= 0; --level) {
         int& deepest = deepestBelow_[tile.ancestor(level)];
-        deepest = std::max(deepest, tile.level());
+        if (deepest >= tile.level()) break;
+        deepest = tile.level();
       }
     }
   }
@@ -23,8 +25,11 @@ class LevelTransitions::Wanted {
   bool refines(const FacePath& path) const { return deepestBelow_.contains(path); }
   /// A wanted tile that is a true ancestor, or -1.
   int coarserLevel(const FacePath& path) const {
-    for (int level = path.level() - 1; level >= 0; --level)
-      if (leaves_.contains(path.ancestor(level))) return level;
+    for (int level = path.level() - 1; level >= 0; --level) {
+      const FacePath ancestor = path.ancestor(level);
+      if (leaves_.contains(ancestor)) return level;
+      if (refines(ancestor)) break;  // so nothing above it is wanted itself
+    }
     return -1;
   }
   bool overlaps(const FacePath& path) const { return contains(path) || refines(path) || coarserLevel(path) >= 0; }

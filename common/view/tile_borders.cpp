@@ -10,12 +10,13 @@ namespace {
 constexpr std::array<std::array<Side, 2>, 4> kEdgesOfCorner{
     {{Side::UMin, Side::VMin}, {Side::UMax, Side::VMin}, {Side::UMin, Side::VMax}, {Side::UMax, Side::VMax}}};
 
-/// Collects what is around an edge or a corner.
+/// What is around an edge or a corner.
 struct Around {
   bool coarser = false, finer = false;
-  float largest;
+  float largest = 0;  ///< morph of an equal
 
-  void see(const DrawnCut& cut, const FacePath& path, Side side) {
+  Around() = default;
+  Around(const DrawnCut& cut, const FacePath& path, Side side) {
     switch (beyond(cut, path, side)) {
       case Beyond::Nothing:
         return;
@@ -26,22 +27,37 @@ struct Around {
         finer = true;
         return;
       case Beyond::Equal:
-        largest = std::max(largest, cut.own(*path.neighbour(side)));
+        largest = cut.own(*path.neighbour(side));
         return;
     }
   }
-  float value() const { return coarser ? 1.0f : finer ? 0.0f : largest; }
+  Around with(const Around& other) const {
+    Around both = *this;
+    both.coarser = coarser || other.coarser;
+    both.finer = finer || other.finer;
+    both.largest = std::max(largest, other.largest);
+    return both;
+  }
+  /// Of a tile whose own morph this is.
+  float value(float own) const { return coarser ? 1.0f : finer ? 0.0f : std::max(own, largest); }
 };
+
+/// Coarsest first.
+bool comesBefore(const FacePath& a, const FacePath& b) {
+  return a.level() != b.level() ? a.level() < b.level() : a < b;
+}
 
 }  // namespace
 
 void DrawnCut::insert(const FacePath& path, float own) {
   own_[path] = own;
+  sorted_.insert(std::ranges::lower_bound(sorted_, path, comesBefore), path);
   for (int level = 0; level < path.level(); ++level) ++descendants_[path.ancestor(level)];
 }
 
 void DrawnCut::erase(const FacePath& path) {
   if (own_.erase(path) == 0) return;
+  sorted_.erase(std::ranges::lower_bound(sorted_, path, comesBefore));
   for (int level = 0; level < path.level(); ++level) {
     const auto above = descendants_.find(path.ancestor(level));
     if (--above->second == 0) descendants_.erase(above);
@@ -50,23 +66,17 @@ void DrawnCut::erase(const FacePath& path) {
 
 void DrawnCut::clear() {
   own_.clear();
+  sorted_.clear();
   descendants_.clear();
 }
 
 std::optional<FacePath> DrawnCut::leafOver(const FacePath& path) const {
-  for (int level = path.level(); level >= 0; --level)
-    if (contains(path.ancestor(level))) return path.ancestor(level);
+  for (int level = path.level(); level >= 0; --level) {
+    const FacePath ancestor = path.ancestor(level);
+    if (contains(ancestor)) return ancestor;
+    if (isRefined(ancestor)) break;  // so nothing above it is in the cut
+  }
   return std::nullopt;
-}
-
-std::vector<FacePath> DrawnCut::tiles() const {
-  std::vector<FacePath> sorted;
-  sorted.reserve(own_.size());
-  for (const auto& [path, value] : own_) sorted.push_back(path);
-  std::ranges::sort(sorted, [](const FacePath& a, const FacePath& b) {
-    return a.level() != b.level() ? a.level() < b.level() : a < b;
-  });
-  return sorted;
 }
 
 Beyond beyond(const DrawnCut& cut, const FacePath& path, Side side) {
@@ -80,17 +90,17 @@ Beyond beyond(const DrawnCut& cut, const FacePath& path, Side side) {
 TileMorph morphOf(const DrawnCut& cut, const FacePath& path) {
   TileMorph morph;
   morph.own = cut.own(path);
-  for (int edge = 0; edge < kEdgeCount; ++edge) {
-    Around around{.largest = morph.own};
-    around.see(cut, path, static_cast<Side>(edge));
-    morph.sides[static_cast<std::size_t>(edge)] = around.value();
-    if (around.coarser) morph.coarserEdges = static_cast<std::uint8_t>(morph.coarserEdges | (1u << edge));
+  std::array<Around, kSideCount> around;
+  for (std::size_t side = 0; side < kSideCount; ++side) around[side] = Around(cut, path, static_cast<Side>(side));
+  for (std::size_t edge = 0; edge < kEdgeCount; ++edge) {
+    morph.sides[edge] = around[edge].value(morph.own);
+    if (around[edge].coarser) morph.coarserEdges = static_cast<std::uint8_t>(morph.coarserEdges | (1u << edge));
   }
-  for (int corner = kEdgeCount; corner < kSideCount; ++corner) {
-    Around around{.largest = morph.own};
-    around.see(cut, path, static_cast<Side>(corner));
-    for (const Side edge : kEdgesOfCorner[static_cast<std::size_t>(corner - kEdgeCount)]) around.see(cut, path, edge);
-    morph.sides[static_cast<std::size_t>(corner)] = around.value();
+  for (std::size_t corner = kEdgeCount; corner < kSideCount; ++corner) {
+    const auto [one, other] = kEdgesOfCorner[corner - kEdgeCount];
+    const Around all =
+        around[corner].with(around[static_cast<std::size_t>(one)]).with(around[static_cast<std::size_t>(other)]);
+    morph.sides[corner] = all.value(morph.own);
   }
   return morph;
 }

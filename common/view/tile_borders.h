@@ -19,7 +19,7 @@ namespace terrane {
 /// Disjoint tiles with their own morph, and the tiles above them.
 class DrawnCut {
  public:
-  /// Precondition: no ancestor and no descendant of it is in the cut.
+  /// Precondition: neither it nor an ancestor or a descendant of it is in the cut.
   void insert(const FacePath& path, float own);
   void erase(const FacePath& path);
   void clear();
@@ -31,12 +31,13 @@ class DrawnCut {
   std::optional<FacePath> leafOver(const FacePath& path) const;
   float own(const FacePath& path) const { return own_.at(path); }
   void setOwn(const FacePath& path, float value) { own_.at(path) = value; }
-  /// Coarsest first, then by path: an order that depends on nothing else.
-  std::vector<FacePath> tiles() const;
+  /// Coarsest first, then by path: an order that depends on nothing else. A copy: the cut may change meanwhile.
+  std::vector<FacePath> tiles() const { return sorted_; }
   std::size_t size() const { return own_.size(); }
 
  private:
   std::unordered_map<FacePath, float> own_;
+  std::vector<FacePath> sorted_;
   std::unordered_map<FacePath, int> descendants_;  ///< how many of the cut's tiles are below
 };
 
