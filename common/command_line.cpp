@@ -23,13 +23,17 @@ void complain(std::string_view program, std::string_view text) noexcept {
 }
 
 Result<void> checkFlagValues(std::span<const std::string> words,
-                             const std::function<bool(std::string_view flag)>& needsValue) {
+                             const std::function<FlagKind(std::string_view flag)>& kindOf) {
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     const std::string_view word = words[i];
     const std::size_t equals = word.find('=');
     const std::string flag(word.substr(0, equals));
-    if (!word.starts_with("--") || !needsValue(flag)) continue;
+    const FlagKind kind = word.starts_with("--") ? kindOf(flag) : FlagKind::Unknown;
     const bool separate = equals == std::string_view::npos;
+    if (kind == FlagKind::Switch && !separate)
+      return makeError(ErrorKind::InvalidArgument, flag,
+                       "takes no value, and is given " + quotedForMessage(word.substr(equals + 1)));
+    if (kind != FlagKind::TakesValue) continue;
     if (separate && i + 1 == words.size()) break;  // the parser says so
     const std::string_view value = separate ? std::string_view(words[++i]) : word.substr(equals + 1);
     if (value.empty()) return makeError(ErrorKind::InvalidArgument, flag, "its value is empty");

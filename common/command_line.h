@@ -1,6 +1,7 @@
 #pragma once
 // What the command lines of both programs have in common. Thread-safe.
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -23,10 +24,12 @@ int exitStatus(const Error& error) noexcept;
 /// "program: text" as one line on stderr: control characters escaped, and lost where nothing can be written.
 void complain(std::string_view program, std::string_view text) noexcept;
 
+enum class FlagKind : std::uint8_t { Unknown, Switch, TakesValue };
+
 /// Before a parser takes the words (without the program's name): a flag that needs a value must not be followed by
 /// another flag, which would be taken for the value, nor by nothing at all as in --flag="". What begins with one dash
-/// only is a value: longitudes are negative. Errors: InvalidArgument naming the flag.
+/// only is a value: longitudes are negative. A switch must be given none. Errors: InvalidArgument naming the flag.
 Result<void> checkFlagValues(std::span<const std::string> words,
-                             const std::function<bool(std::string_view flag)>& needsValue);
+                             const std::function<FlagKind(std::string_view flag)>& kindOf);
 
 }  // namespace terrane

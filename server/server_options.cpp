@@ -173,7 +173,7 @@ struct CommandLine {
 
   /// Throws CLI::Success for --help and --version.
   Result<void> read(std::vector<std::string> words) try {
-    if (Result<void> values = checkFlagValues(words, [&](std::string_view flag) { return needsValue(flag); }); !values)
+    if (Result<void> values = checkFlagValues(words, [&](std::string_view flag) { return kindOf(flag); }); !values)
       return values;
     std::ranges::reverse(words);  // CLI11 takes them last first
     app.parse(std::move(words));
@@ -185,7 +185,10 @@ struct CommandLine {
   }
 
   const CLI::Option* option(std::string_view flag) const { return app.get_option_no_throw(std::string(flag)); }
-  bool needsValue(std::string_view flag) const { return option(flag) && option(flag)->get_items_expected_min() > 0; }
+  FlagKind kindOf(std::string_view flag) const {
+    if (option(flag) == nullptr) return FlagKind::Unknown;
+    return option(flag)->get_items_expected_min() > 0 ? FlagKind::TakesValue : FlagKind::Switch;
+  }
 
   CLI::App app{kDescription, "terrane-server"};
   ServerSettings settings;
@@ -199,7 +202,7 @@ Result<std::vector<std::string>> wordsOf(const ConfigEntry& entry) {
   if (flags.option(flag) == nullptr || entry.key == "config" || entry.key == "help" || entry.key == "version")
     return makeError(ErrorKind::InvalidArgument, flag, "no such flag in a file (see --help)");
   std::vector<std::string> words;
-  if (flags.needsValue(flag)) {
+  if (flags.kindOf(flag) == FlagKind::TakesValue) {
     for (const std::string& value : entry.values) words.push_back(flag + "=" + value);
   } else if (entry.values.size() != 1) {
     return makeError(ErrorKind::InvalidArgument, flag, "a switch takes one value; allowed: true, false");

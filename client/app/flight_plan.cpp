@@ -13,15 +13,23 @@ constexpr double kSameFrame = 1e-6;
 
 }  // namespace
 
-Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place, double radiusMeters) {
-  if (nameOrFile == "descent" || nameOrFile == "orbit" || nameOrFile == "ground")
-    return builtInFlight(nameOrFile, place.longitude, place.latitude, radiusMeters);
-  auto flight = loadFlight(nameOrFile);
-  if (flight) return flight;
+Result<void> readFlight(ViewOptions& options) {
+  const std::string& name = options.flight;
+  if (name.empty() || name == "descent" || name == "orbit" || name == "ground") return {};
+  auto flight = loadFlight(name);
+  if (flight) {
+    options.flightOfFile = std::move(*flight);
+    return {};
+  }
   const Error& error = flight.error();
   return makeError(
       ErrorKind::InvalidArgument, "--flight",
       fmt::format("{} (built in are {})", error.field == "--flight" ? error.message : error.text(), kBuiltInFlights));
+}
+
+Result<Flight> flightOf(const ViewOptions& options, const ViewPose& place, double radiusMeters) {
+  if (options.flightOfFile) return *options.flightOfFile;
+  return builtInFlight(options.flight, place.longitude, place.latitude, radiusMeters);
 }
 
 Result<FlightPlan> planFlight(const Flight& flight, double stepSeconds, std::size_t maxFrames) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "client/app/view_options.h"
 #include "client/flight/flight_file.h"
 #include "common/result.h"
 #include "common/view/camera.h"
@@ -24,8 +25,13 @@ struct FlightPlan {
   std::size_t points = 0;
 };
 
-/// "descent", "orbit", "ground" or a file. place: where the built-in flights go.
-Result<Flight> openFlight(const std::string& nameOrFile, const ViewPose& place, double radiusMeters);
+/// Reads the file of --flight, if it names one, into options: before anything else, so that a wrong one is found at
+/// once. Errors: InvalidArgument naming "--flight".
+Result<void> readFlight(ViewOptions& options);
+
+/// What was read, or the built-in flight that --flight names ("descent", "orbit", "ground"). place: where built-in
+/// flights go.
+Result<Flight> flightOf(const ViewOptions& options, const ViewPose& place, double radiusMeters);
 
 /// Frames every stepSeconds from the first point on, and one at exactly each point's time. maxFrames 0: all of them.
 /// Errors: TooLarge naming "--step" beyond ten million frames.

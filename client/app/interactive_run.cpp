@@ -131,7 +131,7 @@ Done InteractiveRun::begin() {
   const ViewPose home = options_.camera.value_or(whole);
   controls_ = CameraControls(home);
   if (!options_.flight.empty()) {
-    auto flight = openFlight(options_.flight, home, session_->body().selection.radiusMeters);
+    auto flight = flightOf(options_, home, session_->body().selection.radiusMeters);
     if (!flight) return flight.error();
     flight_ = std::move(*flight);
     if (options_.aboveGround) flight_->aboveGround = true;

@@ -104,7 +104,7 @@ Result<FlightPlan> ScriptedRun::plan() {
   const auto frames = static_cast<std::size_t>(options_.frames);
   if (options_.flight.empty())
     return planStill(still, options_.aboveGround, frames > 0 ? frames : counting() ? 8 : 1, options_.stepSeconds);
-  const auto flight = openFlight(options_.flight, still, session_->body().selection.radiusMeters);
+  const auto flight = flightOf(options_, still, session_->body().selection.radiusMeters);
   if (!flight) return flight.error();
   auto plan = frames > 0 && !options_.stepGiven ? Result<FlightPlan>(planFlightInFrames(*flight, frames))
                                                 : planFlight(*flight, options_.stepSeconds, frames);

@@ -388,11 +388,12 @@ Result<std::variant<ViewOptions, OptionsText>> parseViewOptions(const std::vecto
   app.set_version_flag("--version", "terrane-view " TERRANE_VERSION);
   app.get_formatter()->column_width(40);
   for (CLI::Option* option : app.get_options()) option->description(wrapped(option->get_description()));
-  const auto needsValue = [&](std::string_view flag) {
+  const auto kindOf = [&](std::string_view flag) {
     const CLI::Option* option = app.get_option_no_throw(std::string(flag));
-    return option != nullptr && option->get_items_expected_min() > 0;
+    if (option == nullptr) return FlagKind::Unknown;
+    return option->get_items_expected_min() > 0 ? FlagKind::TakesValue : FlagKind::Switch;
   };
-  if (const auto values = checkFlagValues(arguments, needsValue); !values) return values.error();
+  if (const auto values = checkFlagValues(arguments, kindOf); !values) return values.error();
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them last first
   } catch (const CLI::CallForHelp&) {

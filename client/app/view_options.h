@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "client/flight/flight_file.h"
 #include "client/net/simulated_link.h"
 #include "client/render/tile_renderer.h"
 #include "common/result.h"
@@ -19,10 +20,11 @@ namespace terrane {
 
 struct ViewOptions {
   std::string serverUrl;
-  std::string body;                ///< empty: the scene's first
-  std::optional<ViewPose> camera;  ///< none: the whole body in view
-  bool aboveGround = false;        ///< the camera's altitude counts from the finest ground under it
-  std::string flight;              ///< "descent", "orbit", "ground", a file, or empty
+  std::string body;                    ///< empty: the scene's first
+  std::optional<ViewPose> camera;      ///< none: the whole body in view
+  bool aboveGround = false;            ///< the camera's altitude counts from the finest ground under it
+  std::string flight;                  ///< "descent", "orbit", "ground", a file, or empty
+  std::optional<Flight> flightOfFile;  ///< the file's, once it was read (readFlight)
   std::string recordFile;
   int widthPixels = 1280, heightPixels = 720;
   double verticalFieldOfView = 0.8726646259971648;  ///< 50 degrees

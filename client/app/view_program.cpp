@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 
+#include "client/app/flight_plan.h"
 #include "client/app/interactive_run.h"
 #include "client/app/scripted_run.h"
 #include "client/app/view_options.h"
@@ -48,8 +49,10 @@ int runViewProgram(int argc, char** argv) {
       fmt::print("{}", text->text);
       return kExitDone;
     }
+    auto options = std::get<ViewOptions>(*parsed);
+    if (const auto flight = readFlight(options); !flight) return fail(flight.error(), exitStatus(flight.error()));
     keepFreedMemory(kHeapKeptByViewer);
-    return view(std::get<ViewOptions>(*parsed), start);
+    return view(options, start);
   } catch (const std::exception& error) {  // the last edge: out of memory, or a bug
     return fail(makeError(ErrorKind::Internal, "", error.what()), kExitFailed);
   }

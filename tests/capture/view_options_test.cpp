@@ -191,6 +191,10 @@ TEST(ViewOptions, WhatIsWrongIsNamedByItsFlag) {
       {{"--flight", "orbit", "--capture", "%d-%d.png"}, "--capture"},
       {{"--no-such-flag"}, "--no-such-flag"},
       {{"--error"}, "--error"},
+      {{"--headless=7"}, "--headless"},
+      {{"--settle=true"}, "--settle"},
+      {{"--explain="}, "--explain"},
+      {{"--version=1"}, "--version"},
       {{"stray"}, "stray"},
   };
   for (const Wrong& wrong : cases) {
@@ -261,6 +265,16 @@ TEST(ViewProgram, VersionIsOneLineOnStdout) {
   EXPECT_EQ(outcome.output.rfind("terrane-view ", 0), 0u) << outcome.output;
 }
 
+TEST(ViewProgram, AWrongFlightFileIsFoundBeforeAnyServerIsAsked) {
+  for (const char* file : {"/no/such/flight", "/dev/null"}) {
+    const auto outcome = testing_support::runView({"--server", "http://127.0.0.1:1", "--headless", "--flight", file});
+    EXPECT_EQ(outcome.status, 2) << outcome.errors;
+    EXPECT_EQ(testing_support::lineCount(outcome.errors), 1u) << outcome.errors;
+    EXPECT_EQ(outcome.errors.rfind("terrane-view: --flight: ", 0), 0u) << outcome.errors;
+    EXPECT_NE(outcome.errors.find(file), std::string::npos) << outcome.errors;
+  }
+}
+
 TEST(ViewProgram, WhatTurnsOutToBeWrongLaterIsNamedByItsFlagOnceWithItsStatus) {
   const testing_support::RunningServer server("smooth");
   ASSERT_FALSE(server.url.empty());
@@ -268,8 +282,7 @@ TEST(ViewProgram, WhatTurnsOutToBeWrongLaterIsNamedByItsFlagOnceWithItsStatus) {
     std::string flag, value;
     int status;
   };
-  for (const Late& late : {Late{"--flight", "/no/such/flight", 2}, Late{"--flight", "/dev/null", 2},
-                           Late{"--body", "mars", 2}, Late{"--capture", "/no/such/folder/a.png", 1},
+  for (const Late& late : {Late{"--body", "mars", 2}, Late{"--capture", "/no/such/folder/a.png", 1},
                            Late{"--stats", "/no/such/folder/a.json", 1}, Late{"--cache", "/dev/null/tiles", 1}}) {
     const auto outcome =
         testing_support::runView({"--server", server.url, "--headless", "--size", "64x36", late.flag, late.value});

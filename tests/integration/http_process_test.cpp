@@ -152,6 +152,9 @@ TEST(ServerProgram, EveryWrongFlagIsOneLineThatNamesItAndExitsWithTwo) {
       {{"--scene", "smooth", "--shutdown-grace", "inf"}, "--shutdown-grace"},
       {{"--scene", "smooth", "--log-level", "loud"}, "--log-level"},
       {{"--config", "/nonexistent.toml"}, "/nonexistent.toml"},
+      {{"--check=7"}, "--check: "},
+      {{"--explain=true"}, "--explain: "},
+      {{"--version="}, "--version: "},
   };
   for (const Case& c : cases) {
     const FinishedProcess end = runServer(c.arguments);

@@ -8,7 +8,10 @@ namespace terrane {
 namespace {
 
 Result<void> check(const std::vector<std::string>& words) {
-  return checkFlagValues(words, [](std::string_view flag) { return flag == "--server" || flag == "--camera"; });
+  return checkFlagValues(words, [](std::string_view flag) {
+    if (flag == "--server" || flag == "--camera") return FlagKind::TakesValue;
+    return flag == "--headless" ? FlagKind::Switch : FlagKind::Unknown;
+  });
 }
 
 TEST(CommandLine, AFlagThatNeedsAValueDoesNotSwallowTheNextFlag) {
@@ -29,6 +32,16 @@ TEST(CommandLine, AnEmptyValueIsNone) {
     EXPECT_EQ(empty.error().field, "--server");
   }
   EXPECT_TRUE(check({"--headless", ""})) << "no value of that flag";
+}
+
+TEST(CommandLine, ASwitchTakesNoValue) {
+  for (const char* word : {"--headless=7", "--headless=true", "--headless="}) {
+    const auto given = check({"--server", "x", word});
+    ASSERT_FALSE(given) << word;
+    EXPECT_EQ(given.error().field, "--headless");
+  }
+  EXPECT_TRUE(check({"--headless", "7"})) << "a stray word, the parser's to refuse";
+  EXPECT_TRUE(check({"--hedless=7"})) << "no such flag: the parser says so";
 }
 
 TEST(CommandLine, WhatBeginsWithOneDashIsAValue) {
