@@ -16,26 +16,18 @@
 #include "common/view/horizon.h"
 #include "common/view/level_of_detail.h"
 #include "common/view/tile_selection.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {
 
-constexpr double kMoon = 1'737'400.0;
+constexpr double kMoon = kMoonRadiusMeters;
 constexpr double kPi = std::numbers::pi;
 constexpr HeightRange kHeights{-9000, 9000};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-SelectionBody moon() {
-  SelectionBody body;
-  body.radiusMeters = kMoon;
-  body.maxLevel = 24;
-  body.heights = kHeights;
-  body.occluderRadiusMeters = lowestSurfaceRadiusMeters(kMoon, kHeights.minMeters, 64);
-  for (int level = 0; level <= body.maxLevel; ++level)
-    body.geometricErrorMeters.push_back(0.4 / 64 * nominalTileWidthMeters(kMoon, level));
-  return body;
-}
+SelectionBody moon() { return selectionMoon(24, kHeights); }
 
 struct Place {
   std::string name;

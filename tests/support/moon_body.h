@@ -5,6 +5,9 @@
 #include <cstdint>
 
 #include "common/scene/scene.h"
+#include "common/tiling/cube_sphere.h"
+#include "common/tiling/tile_bounds.h"
+#include "common/view/tile_selection.h"
 
 namespace terrane {
 
@@ -18,6 +21,20 @@ inline Body testBody(FieldKind field, double radiusMeters, std::uint64_t seed = 
   return body;
 }
 
-inline Body testMoon(std::uint64_t seed = 1969) { return testBody(FieldKind::Lunar, 1'737'400.0, seed); }
+inline constexpr double kMoonRadiusMeters = 1'737'400.0;
+
+inline Body testMoon(std::uint64_t seed = 1969) { return testBody(FieldKind::Lunar, kMoonRadiusMeters, seed); }
+
+/// The Moon as selection sees it, with errors of 0.4 cells of 64, as the lunar field's are.
+inline SelectionBody selectionMoon(int maxLevel, const HeightRange& heights) {
+  SelectionBody body;
+  body.radiusMeters = kMoonRadiusMeters;
+  body.maxLevel = maxLevel;
+  body.heights = heights;
+  body.occluderRadiusMeters = lowestSurfaceRadiusMeters(kMoonRadiusMeters, heights.minMeters, 64);
+  for (int level = 0; level <= maxLevel; ++level)
+    body.geometricErrorMeters.push_back(0.4 / 64 * nominalTileWidthMeters(kMoonRadiusMeters, level));
+  return body;
+}
 
 }  // namespace terrane

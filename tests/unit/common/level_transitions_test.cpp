@@ -16,24 +16,16 @@
 #include "common/tiling/cube_sphere.h"
 #include "common/tiling/lattice.h"
 #include "common/view/tile_selection.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {
 
-constexpr double kMoon = 1'737'400.0;
+constexpr double kMoon = kMoonRadiusMeters;
 constexpr double kPi = std::numbers::pi;
 constexpr HeightRange kHeights{-3000, 3000};
 
-SelectionBody moon() {
-  SelectionBody body;
-  body.radiusMeters = kMoon;
-  body.maxLevel = 20;
-  body.heights = kHeights;
-  body.occluderRadiusMeters = lowestSurfaceRadiusMeters(kMoon, kHeights.minMeters, 64);
-  for (int level = 0; level <= body.maxLevel; ++level)
-    body.geometricErrorMeters.push_back(0.4 / 64 * nominalTileWidthMeters(kMoon, level));
-  return body;
-}
+SelectionBody moon() { return selectionMoon(20, kHeights); }
 
 HeightRange heightsOf(const FacePath& path) {
   const double reach = std::min(3000.0, 0.05 * nominalTileWidthMeters(kMoon, path.level()));

@@ -11,25 +11,17 @@
 
 #include "common/tiling/cube_sphere.h"
 #include "common/tiling/lattice.h"
+#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {
 
-constexpr double kMoon = 1'737'400.0;
+constexpr double kMoon = kMoonRadiusMeters;
 constexpr double kPi = std::numbers::pi;
 constexpr unsigned kSeed = 2;
 constexpr HeightRange kHeights{-9000, 9000};
 
-SelectionBody moon(int deepest = 24) {
-  SelectionBody body;
-  body.radiusMeters = kMoon;
-  body.maxLevel = deepest;
-  body.heights = kHeights;
-  body.occluderRadiusMeters = lowestSurfaceRadiusMeters(kMoon, kHeights.minMeters, 64);
-  for (int level = 0; level <= deepest; ++level)
-    body.geometricErrorMeters.push_back(0.4 / 64 * nominalTileWidthMeters(kMoon, level));
-  return body;
-}
+SelectionBody moon(int deepest = 24) { return selectionMoon(deepest, kHeights); }
 
 /// The true ground of these tests: a smooth swell, so that heights tighten with the level as a real body's do.
 HeightRange heightsOf(const FacePath& path, double reachPerWidth) {
