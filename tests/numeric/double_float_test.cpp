@@ -51,6 +51,7 @@ TEST(DoubleFloatConformance, WorstErrorsFoundBySearchAreUnderTheProvenBoundsAndN
               << worst.at.x.hi << " + " << worst.at.x.lo << ", y = " << worst.at.y.hi << " + " << worst.at.y.lo
               << std::defaultfloat << '\n';
     EXPECT_LE(worst.units, operation.bound) << operation.name;
+    if (!test::kSearchIsFull) continue;
     EXPECT_GE(worst.units, operation.expected) << operation.name << ": the search is too easy to prove anything";
   }
 }

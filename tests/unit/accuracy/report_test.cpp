@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -34,43 +33,37 @@ Report runQuickly(const Experiment& experiment) {
   return experiment.run({.quick = true}, progress);
 }
 
-/// The first run of each experiment, kept: they are looked at by more than one test.
-const Report& firstRun(const Experiment& experiment) {
-  static std::map<std::string_view, Report> runs;
-  const auto [at, isNew] = runs.try_emplace(experiment.name);
-  if (isNew) at->second = runQuickly(experiment);
-  return at->second;
-}
-
 bool isTime(const Column& column) { return column.key.starts_with("time"); }
 
-TEST(Accuracy, EveryExperimentIsNamedOnceAndFillsItsTable) {
+void expectFilled(const Experiment& experiment, const Report& report) {
+  ASSERT_FALSE(report.findings.empty()) << experiment.name;
+  // One that draws says so where there is nothing to draw on.
+  EXPECT_NE(report.rows.empty(), !report.findings.front().starts_with("Not run: ")) << experiment.name;
+  for (const auto& row : report.rows) EXPECT_EQ(row.size(), report.columns.size()) << experiment.name;
+  for (const Plot& plot : report.plots) EXPECT_THAT(plotSvg(plot, report), HasSubstr("<circle")) << plot.title;
+}
+
+void expectSameErrors(const Experiment& experiment, const Report& first, const Report& second) {
+  ASSERT_EQ(first.rows.size(), second.rows.size());
+  for (std::size_t r = 0; r < first.rows.size(); ++r) {
+    for (std::size_t c = 0; c < first.columns.size(); ++c) {
+      if (isTime(first.columns[c])) continue;
+      EXPECT_EQ(first.rows[r][c], second.rows[r][c]) << experiment.name << " row " << r;
+    }
+  }
+}
+
+// One test, for the experiments take long: ctest runs each test in a process of its own.
+TEST(Accuracy, EveryExperimentIsNamedOnceFillsItsTableAndGivesTheSameErrorsToTheLastDigitAgain) {
   std::set<std::string_view> names;
   for (const Experiment& experiment : experiments()) {
     EXPECT_TRUE(names.insert(experiment.name).second) << experiment.name;
     EXPECT_FALSE(experiment.question.empty()) << experiment.name;
-    const Report& report = firstRun(experiment);
-    ASSERT_FALSE(report.findings.empty()) << experiment.name;
-    // One that draws says so where there is nothing to draw on.
-    EXPECT_NE(report.rows.empty(), !report.findings.front().starts_with("Not run: ")) << experiment.name;
-    for (const auto& row : report.rows) EXPECT_EQ(row.size(), report.columns.size()) << experiment.name;
-    for (const Plot& plot : report.plots) EXPECT_THAT(plotSvg(plot, report), HasSubstr("<circle")) << plot.title;
+    const Report first = runQuickly(experiment);
+    expectFilled(experiment, first);
+    expectSameErrors(experiment, first, runQuickly(experiment));
   }
   EXPECT_GE(names.size(), 5u);
-}
-
-TEST(Accuracy, ASecondRunGivesTheSameErrorsToTheLastDigit) {
-  for (const Experiment& experiment : experiments()) {
-    const Report& first = firstRun(experiment);
-    const Report second = runQuickly(experiment);
-    ASSERT_EQ(first.rows.size(), second.rows.size());
-    for (std::size_t r = 0; r < first.rows.size(); ++r) {
-      for (std::size_t c = 0; c < first.columns.size(); ++c) {
-        if (isTime(first.columns[c])) continue;
-        EXPECT_EQ(first.rows[r][c], second.rows[r][c]) << experiment.name << " row " << r;
-      }
-    }
-  }
 }
 
 Finished sample() {
