@@ -48,6 +48,7 @@ HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const D
   state.gpuBytes = session.gpuBytes();
   state.rssBytes = residentSetBytes();
   state.placement = placementName(session.drawSettings.placement);
+  state.transition = transitionName(session.drawSettings.transition);
   state.selfTest = selfTestText(session.selfTest());
   state.mode = "scripted";
   state.network = networkText(stream.network);
@@ -64,6 +65,7 @@ void describeSession(const ViewSession& session, const ViewOptions& options, Run
   statistics.gpuBytes = session.gpuBytes();
   statistics.errorPixels = session.errorPixels;
   statistics.placement = session.drawSettings.placement;
+  statistics.transition = session.drawSettings.transition;
   statistics.selfTest = session.selfTest();
   statistics.stream = session.streamStatus();
   statistics.pose = session.pose();

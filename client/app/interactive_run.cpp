@@ -219,6 +219,9 @@ void InteractiveRun::obey(ViewCommand command) {
     case ViewCommand::NextPlacement:
       draw.placement = static_cast<Placement>((static_cast<int>(draw.placement) + 1) % kPlacementCount);
       break;
+    case ViewCommand::NextTransition:
+      draw.transition = static_cast<Transition>((static_cast<int>(draw.transition) + 1) % kTransitionCount);
+      break;
     case ViewCommand::Quit:
       quit_ = true;
       break;

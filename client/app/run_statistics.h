@@ -53,6 +53,7 @@ struct RunStatistics {
   std::uint64_t rssBytes = 0, gpuBytes = 0;
   double errorPixels = 0;
   Placement placement = Placement::Integer;
+  Transition transition = Transition::Morph;
   SelfTestReport selfTest;
   StreamStatus stream;
   ViewPose pose;                        ///< of the last frame

@@ -111,6 +111,7 @@ std::string statisticsJson(const RunStatistics& s) {
   object.add("residentBytes", s.stream.residentBytes);
   object.add("errorPixels", number(s.errorPixels));
   object.add("placement", quoted(placementName(s.placement)));
+  object.add("transition", quoted(transitionName(s.transition)));
   object.add("selfTest", selfTestJson(s.selfTest));
   object.add("renderer", quoted(s.selfTest.renderer));
   object.add("version", quoted(s.selfTest.version));

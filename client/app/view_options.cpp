@@ -35,7 +35,7 @@ Controls
   right drag    look around                               wheel: nearer, further
   W A S D Q E   fly; Shift faster, Ctrl slower; the speed follows the height above ground
   Tab mode      Home reset     P placement     F1 help and figures     F2 wireframe     F3 level colours
-  F4 freeze selection          + - allowed error            F12 screenshot              Esc quit
+  F4 freeze selection          F5 changes of level          + - allowed error           F12 screenshot   Esc quit
 
 Statistics (--stats)
   frameMs is CPU and GPU together (the GPU is waited for). uncoveredPixels and skirtPixels are counted in an own pass for every
@@ -62,8 +62,8 @@ std::optional<double> parseNumber(std::string_view text) {
 struct RawOptions {
   ViewOptions options;
   std::optional<std::string> camera;
-  std::string size = "1280x720", placement = "auto", samples = "auto", cache, cacheBudget = "512MiB",
-              memoryBudget = "128MiB", bandwidth = "0";
+  std::string size = "1280x720", placement = "auto", samples = "auto", transition = "morph", cache,
+              cacheBudget = "512MiB", memoryBudget = "128MiB", bandwidth = "0";
   int latencyMs = 0;
   std::vector<std::string> without;
   double fieldOfViewDegrees = 50;
@@ -169,6 +169,11 @@ void declarePictureOptions(CLI::App& app, RawOptions& raw) {
          "More than the driver has are the most that it has")
       ->type_name("N|auto|off")
       ->capture_default_str();
+  app.add_option("--transition", raw.transition,
+                 "How a change of level is shown: morph, or to compare: blend (both levels mixed by alpha), none (it "
+                 "pops)")
+      ->type_name("NAME")
+      ->capture_default_str();
   app.add_option("--without", raw.without,
                  "Leave out this effect of the scene, as if it did not name it: to compare. May be given several times")
       ->type_name("EFFECT")
@@ -249,6 +254,9 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
   auto without = parseEffects(raw.without);
   if (!without) return without.error();
   o.without = std::move(*without);
+  const auto transition = parseTransition(raw.transition);
+  if (!transition) return transition.error();
+  o.transition = *transition;
   for (const auto& range :
        {checkRange("--fov", raw.fieldOfViewDegrees, 1, 150), checkRange("--error", o.errorPixels, 0.1, 100),
         checkRange("--frame-budget", o.frameBudgetMs, 0, 10'000), checkRange("--frames", o.frames, 0, 1e6),

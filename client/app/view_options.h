@@ -31,8 +31,9 @@ struct ViewOptions {
   double errorPixels = 2;
   double frameBudgetMs = 0;            ///< 0: off
   std::optional<Placement> placement;  ///< none: what the self-test of the GPU chose
-  std::optional<int> samples;          ///< a pixel; 1 is no multisampling; none: what suits the renderer
-  std::vector<EffectKind> without;     ///< effects to leave out of the scene's
+  Transition transition = Transition::Morph;
+  std::optional<int> samples;       ///< a pixel; 1 is no multisampling; none: what suits the renderer
+  std::vector<EffectKind> without;  ///< effects to leave out of the scene's
   bool headless = false, settle = false, hud = false, explain = false;
   std::string captureFile;  ///< "%d" in it: one picture for each point of the flight
   std::string statsFile;

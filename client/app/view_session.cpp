@@ -60,6 +60,7 @@ struct ViewSession::State {
   ViewPose pose;
   TileSelection selection;
   LevelTransitions transitions;
+  bool overTime = true;  ///< what transitions was made for
   std::vector<DrawnTile> drawn;
   std::size_t missing = 0, wantedCount = 0;
   bool firstUpdate = true, wasSettled = false;
@@ -74,6 +75,7 @@ struct ViewSession::State {
   double altitudeAboveDrawn(const ViewPose& viewed) const;
   std::vector<WantedTile> groundChain(double allowedPixels) const;
   bool requestTiles(double allowedPixels, bool groundFirst);
+  void changeLevelsOverTime(bool wanted);
   bool chooseTiles(const Camera& from, double allowedPixels, double seconds);
 };
 
@@ -125,6 +127,7 @@ Result<bool> ViewSession::ready() {
   s.renderer = std::move(*renderer);
   s.stream->selectBody(body);
   drawSettings.placement = s.options.placement.value_or(s.renderer->selfTest().chosen);
+  drawSettings.transition = s.options.transition;
   drawSettings.samples = s.options.samples.value_or(s.renderer->samplesByDefault());
   return true;
 }
@@ -233,6 +236,10 @@ bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst) {
   return groundKnown;
 }
 
+void ViewSession::State::changeLevelsOverTime(bool wanted) {
+  if (wanted != std::exchange(overTime, wanted)) transitions = LevelTransitions({.morph = wanted});
+}
+
 // What is wanted from there, and from what is wanted to what is drawn; true if that is another picture.
 bool ViewSession::State::chooseTiles(const Camera& from, double allowedPixels, double seconds) {
   SelectionSettings settings;
@@ -263,6 +270,7 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   bool levelsChanged = false;
   double altitudeDue = pose.altitudeMeters;  // above what is drawn now, not a frame ago
   if (!frozen) {
+    s.changeLevelsOverTime(drawSettings.transition != Transition::None);
     levelsChanged = s.chooseTiles(camera, errorPixels, view.seconds);
     for (int rises = 0; rises < kMostRises; ++rises) {
       altitudeDue = s.altitudeAboveDrawn(viewed);

@@ -19,6 +19,8 @@ std::optional<ViewCommand> commandOf(int key) {
       return ViewCommand::ToggleLevelColors;
     case GLFW_KEY_F4:
       return ViewCommand::ToggleFreeze;
+    case GLFW_KEY_F5:
+      return ViewCommand::NextTransition;
     case GLFW_KEY_F12:
       return ViewCommand::Screenshot;
     case GLFW_KEY_TAB:

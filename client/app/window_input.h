@@ -22,6 +22,7 @@ enum class ViewCommand {
   ToggleMode,
   Home,
   NextPlacement,
+  NextTransition,
   Quit,
 };
 

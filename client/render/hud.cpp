@@ -43,6 +43,7 @@ void figureRows(const HudState& s) {
   row("memory", fmt::format("{} process, {} tiles, {} GPU", bytesText(s.rssBytes), bytesText(s.residentBytes),
                             bytesText(s.gpuBytes)));
   row("placement", s.placement);
+  row("new levels", s.transition);
   row("self-test", s.selfTest);
 }
 
@@ -74,8 +75,9 @@ void keysPanel(float scale, float heightPixels) {
   ImGui::Begin("keys", nullptr, kPanel);
   ImGui::TextColored(
       kDim, "drag, wheel, right drag | WASD QE fly, Shift fast, Ctrl slow | Tab mode | Home reset | P placement");
-  ImGui::TextColored(
-      kDim, "F1 this | F2 wireframe | F3 level colours | F4 freeze selection | + - error | F12 screenshot | Esc quit");
+  ImGui::TextColored(kDim,
+                     "F1 this | F2 wireframe | F3 level colours | F4 freeze selection | F5 changes of level | + - "
+                     "error | F12 screenshot | Esc quit");
   ImGui::End();
 }
 

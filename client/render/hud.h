@@ -24,7 +24,7 @@ struct HudState {
   std::size_t tilesDrawn = 0, tilesLoading = 0, tilesResident = 0, triangles = 0;
   std::size_t bytesReceived = 0, residentBytes = 0, gpuBytes = 0, rssBytes = 0;
   /// network, link, notice: empty when there is nothing to say.
-  std::string placement, selfTest, mode, network, link, notice;
+  std::string placement, transition, selfTest, mode, network, link, notice;
   double progress = 1;  ///< towards the first full view
   bool firstViewComplete = false;
   bool frozen = false, wireframe = false, levelColors = false;

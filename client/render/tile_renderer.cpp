@@ -9,12 +9,14 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <unordered_map>
 
 #include "client/gl/render_target.h"
 #include "client/render/coverage.h"
 #include "client/render/effect_pass.h"
 #include "client/render/gpu_self_test.h"
 #include "client/render/gpu_tiles.h"
+#include "client/render/level_blend.h"
 #include "client/render/tile_program.h"
 
 namespace terrane {
@@ -39,7 +41,9 @@ glm::vec3 levelTint(int level) {
 /// The state of a pass over tiles, and GL's defaults again afterwards (the HUD relies on them).
 class TilePass {
  public:
-  TilePass(const gl::Capabilities& capabilities, bool wireframe) : clipControl_(capabilities.clipControl) {
+  enum class Start : std::uint8_t { Cleared, Kept };  ///< what is in the framebuffer
+  TilePass(const gl::Capabilities& capabilities, bool wireframe, Start start = Start::Cleared)
+      : clipControl_(capabilities.clipControl) {
     if (clipControl_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
@@ -53,7 +57,7 @@ class TilePass {
     glPolygonMode(GL_FRONT_AND_BACK, wireframe ? GL_LINE : GL_FILL);
     glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
     glClearDepth(0.0);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    if (start == Start::Cleared) glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   }
   TilePass(const TilePass&) = delete;
   TilePass& operator=(const TilePass&) = delete;
@@ -98,6 +102,34 @@ std::vector<DrawnTile> asTheyAre(std::span<const FacePath> paths) {
   return tiles;
 }
 
+/// What the pass that fills the depth buffer draws.
+struct Surfaces {
+  std::vector<DrawnTile> tiles;
+  bool skirts = false;
+};
+
+Surfaces surfacesOf(std::span<const DrawnTile> tiles, const DrawSettings& settings) {
+  Surfaces surfaces{{tiles.begin(), tiles.end()}, settings.skirts || settings.transition != Transition::Morph};
+  if (settings.transition != Transition::Morph)
+    for (DrawnTile& tile : surfaces.tiles) tile.morph = {};
+  return surfaces;
+}
+
+/// The same cut with the tiles that are in between as their parents' surfaces.
+std::vector<DrawnTile> asTheirParents(std::span<const DrawnTile> tiles) {
+  std::vector<DrawnTile> parents;
+  parents.reserve(tiles.size());
+  for (const DrawnTile& tile : tiles) {
+    TileMorph whole;
+    if (tile.morph.own > 0) {
+      whole.own = 1;
+      whole.sides.fill(1);
+    }
+    parents.push_back({tile.path, whole});
+  }
+  return parents;
+}
+
 }  // namespace
 
 struct TileRenderer::State {
@@ -109,6 +141,7 @@ struct TileRenderer::State {
   std::array<std::optional<TileProgram>, std::size_t{2} * kTilePurposeCount * kPlacementCount> programs;
   std::optional<RenderTarget> windowTarget, coverageTarget;
   std::vector<std::unique_ptr<EffectPass>> passes;
+  std::optional<LevelBlend> levelBlend;  ///< once asked for
   std::vector<float> scratch;
 
   /// Compiled when first asked for. Errors: Unsupported ("shader").
@@ -208,27 +241,71 @@ struct TileRenderer::State {
     return values;
   }
 
+  /// One tile of a shaded pass.
+  static void drawShaded(const TileProgram& program, const TileDraw& draw, const DrawSettings& settings,
+                         DrawStats& stats) {
+    if (settings.levelColors) program.setTint(levelTint(draw.tile->metadata.path.level()));
+    TileIndices& indices = *draw.tile->layout->indices;
+    stats.triangles += drawList(indices.surface(draw.coarserEdges));
+    if (draw.skirts) stats.triangles += drawList(indices.skirts());
+    stats.drawCalls += draw.skirts ? 2 : 1;
+  }
+
   DrawStats drawTiles(const Camera& camera, std::span<const DrawnTile> list, const DrawSettings& settings,
                       Placement placement) {
     DrawStats stats;
     stats.samples = gl::boundSamples();
-    const TilePass pass(capabilities, settings.wireframe);
-    const std::vector<TileDraw> ordered = nearestFirst(camera, list, settings.skirts);
-    forEachTile(camera, ordered, placement, TilePurpose::Shaded, [&](const TileProgram& program, const TileDraw& draw) {
-      if (settings.levelColors) program.setTint(levelTint(draw.tile->metadata.path.level()));
-      TileIndices& indices = *draw.tile->layout->indices;
-      stats.triangles += drawList(indices.surface(draw.coarserEdges));
-      if (draw.skirts) stats.triangles += drawList(indices.skirts());
-      stats.drawCalls += draw.skirts ? 2 : 1;
-      ++stats.tiles;
-    });
-    if (!settings.dust) return stats;
-    for (const auto& effectPass : passes) {
-      const PassStats drawn = effectPass->draw(camera, ordered);
+    const Surfaces surfaces = surfacesOf(list, settings);
+    const std::vector<TileDraw> ordered = nearestFirst(camera, surfaces.tiles, surfaces.skirts);
+    {
+      const TilePass pass(capabilities, settings.wireframe);
+      forEachTile(camera, ordered, placement, TilePurpose::Shaded,
+                  [&](const TileProgram& program, const TileDraw& draw) {
+                    drawShaded(program, draw, settings, stats);
+                    ++stats.tiles;
+                  });
+    }
+    if (settings.transition == Transition::Blend) blendParents(camera, list, settings, placement, stats);
+    if (settings.effectPasses) drawPasses(camera, ordered, settings, stats);
+    return stats;
+  }
+
+  void drawPasses(const Camera& camera, std::span<const TileDraw> ordered, const DrawSettings& settings,
+                  DrawStats& stats) {
+    if (passes.empty()) return;
+    const TilePass state(capabilities, settings.wireframe, TilePass::Start::Kept);
+    for (const auto& pass : passes) {
+      const PassStats drawn = pass->draw(camera, ordered);
       stats.triangles += drawn.triangles;
       stats.drawCalls += drawn.drawCalls;
     }
-    return stats;
+  }
+
+  /// Mixes the parents' surfaces over the tiles' own, which were just drawn; nothing to do where no tile is in between.
+  void blendParents(const Camera& camera, std::span<const DrawnTile> list, const DrawSettings& settings,
+                    Placement placement, DrawStats& stats) {
+    std::unordered_map<FacePath, float> shares;
+    for (const DrawnTile& tile : list)
+      if (tile.morph.own > 0) shares.emplace(tile.path, tile.morph.own);
+    if (shares.empty()) return;
+    if (!levelBlend) {
+      auto created = LevelBlend::create(capabilities);
+      if (!created) return;
+      levelBlend.emplace(std::move(*created));
+    }
+    if (!levelBlend->bind(camera.widthPixels, camera.heightPixels)) return;
+    {
+      const TilePass pass(capabilities, settings.wireframe);
+      LevelBlend::beginTiles();
+      forEachTile(camera, nearestFirst(camera, asTheirParents(list), true), placement, TilePurpose::Shaded,
+                  [&](const TileProgram& program, const TileDraw& draw) {
+                    const auto share = shares.find(draw.tile->metadata.path);
+                    LevelBlend::setShare(share == shares.end() ? 0.0f : share->second);
+                    drawShaded(program, draw, settings, stats);
+                  });
+      LevelBlend::endTiles();
+    }
+    levelBlend->mix();
   }
 };
 
@@ -306,10 +383,12 @@ CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const 
   std::optional<RenderTarget>& target = state_->coverageTarget;
   if (!provide(target, camera, TargetFormat::R8, 1)) return {};
   target->bind();
+  const Surfaces surfaces = surfacesOf(tiles, settings);
   {
     const TilePass pass(state_->capabilities, false);
-    state_->forEachTile(camera, state_->nearestFirst(camera, tiles, settings.skirts), usable(settings.placement),
-                        TilePurpose::Coverage, [](const TileProgram& program, const TileDraw& draw) {
+    state_->forEachTile(camera, state_->nearestFirst(camera, surfaces.tiles, surfaces.skirts),
+                        usable(settings.placement), TilePurpose::Coverage,
+                        [](const TileProgram& program, const TileDraw& draw) {
                           TileIndices& indices = *draw.tile->layout->indices;
                           program.setMark(1.0f);
                           drawList(indices.surface(draw.coarserEdges));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/render/placement.h"
+#include "client/render/transition.h"
 #include "common/result.h"
 #include "common/scene/effects.h"
 #include "common/view/camera.h"
@@ -35,10 +36,12 @@ struct DrawSettings {
   /// Draw every tile's skirts. Not needed where edges towards coarser tiles are morphed and stitched to them; a tile
   /// that cannot be (DrawnTile) is drawn with its skirts anyway.
   bool skirts = false;
-  /// Draw what effects put on the ground (dust), where the scene names them.
-  bool dust = true;
+  /// Draw what effects draw by themselves over the tiles (detail, dust), where the scene names them.
+  bool effectPasses = true;
   /// A pixel, for smooth edges, where draw makes the target: with the window's own framebuffer bound.
   int samples = 1;
+  /// Blend and None draw every tile's own surface with its skirts; Blend then mixes in the parents' surfaces.
+  Transition transition = Transition::Morph;
 };
 
 struct RendererOptions {

@@ -48,8 +48,7 @@ class FlightCoverage : public testing::TestWithParam<const char*> {
 
   /// The built-in flight, in a time that so many frames fill: written as a file.
   std::string inOtherTime(const char* name) {
-    auto flight =
-        openFlight(name, {-16.4018 / 57.29577951308232, 21.6039 / 57.29577951308232, 0, 0, 0}, kMoonRadiusMeters);
+    auto flight = builtInFlight(name, -16.4018 / 57.29577951308232, 21.6039 / 57.29577951308232, kMoonRadiusMeters);
     EXPECT_TRUE(flight);
     const double seconds = std::max(kShortestStreamSeconds, frameCount() / kFramesPerSecond);
     const double scale = seconds / flight->durationSeconds();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRadiusMeters = 1'737'400;
 
-Flight builtIn(const std::string& name) { return *openFlight(name, {-0.286, 0.377, 0, 0, 0}, kRadiusMeters); }
+Flight builtIn(const std::string& name) { return *builtInFlight(name, -0.286, 0.377, kRadiusMeters); }
 
 TEST(FlightPlan, SoManyFramesAreSpreadOverTheWholeFlightWithAllItsPoints) {
   for (const char* name : {"descent", "orbit", "ground"}) {

@@ -47,6 +47,7 @@ TEST(ViewOptions, DefaultsAreThoseThatHelpStates) {
   EXPECT_EQ(options.frameBudgetMs, 0);
   EXPECT_FALSE(options.placement);
   EXPECT_FALSE(options.samples);
+  EXPECT_EQ(options.transition, Transition::Morph);
   EXPECT_DOUBLE_EQ(options.verticalFieldOfView, 50 * kDegrees);
 }
 
@@ -133,6 +134,11 @@ TEST(ViewOptions, SamplesAPixelAreANumberOrOffOrWhatSuitsTheRenderer) {
   for (const int samples : {1, 2, 4, 8}) EXPECT_EQ(parsed({"--msaa", std::to_string(samples)}).samples, samples);
 }
 
+TEST(ViewOptions, EveryTransitionHasItsName) {
+  for (const char* name : {"morph", "blend", "none"})
+    EXPECT_EQ(transitionName(parsed({"--transition", name}).transition), name);
+}
+
 struct Wrong {
   std::vector<std::string> arguments;
   std::string flag;
@@ -168,6 +174,7 @@ TEST(ViewOptions, WhatIsWrongIsNamedByItsFlag) {
       {{"--placement", "float64"}, "--placement"},
       {{"--msaa", "3"}, "--msaa"},
       {{"--msaa", "on"}, "--msaa"},
+      {{"--transition", "fade"}, "--transition"},
       {{"--frames", "-3"}, "--frames"},
       {{"--frames", "1000000000"}, "--frames"},
       {{"--frames", "1.5"}, "--frames"},
@@ -224,6 +231,7 @@ TEST(ViewOptions, HelpExplainsEveryFlagAndEveryKey) {
                            "--frame-budget",
                            "--placement",
                            "--msaa",
+                           "--transition",
                            "--headless",
                            "--settle",
                            "--capture",
@@ -244,6 +252,7 @@ TEST(ViewOptions, HelpExplainsEveryFlagAndEveryKey) {
                            "F2",
                            "F3",
                            "F4",
+                           "F5",
                            "F12",
                            "Tab",
                            "Home"})

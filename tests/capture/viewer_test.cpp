@@ -36,10 +36,11 @@ TEST_F(Viewer, SettlesAtACameraCapturesItAndWritesEveryFigure) {
   EXPECT_EQ(image->width, 320);
   EXPECT_EQ(image->height, 180);
   const std::string json = readFile(folder_ / "a.json");
-  for (const char* key : {"framesDrawn", "frameMs",       "p50",      "p99",           "max",      "msToSettle",
-                          "tilesDrawn",  "tilesResident", "requests", "bytesReceived", "decodeMs", "uncoveredPixels",
-                          "skirtPixels", "rssBytes",      "gpuBytes", "placement",     "selfTest", "errorPixels",
-                          "msaaSamples", "camera",        "effects",  "constructed",   "renderer", "points"})
+  for (const char* key : {"framesDrawn", "frameMs",         "p50",           "p99",        "max",
+                          "msToSettle",  "tilesDrawn",      "tilesResident", "requests",   "bytesReceived",
+                          "decodeMs",    "uncoveredPixels", "skirtPixels",   "rssBytes",   "gpuBytes",
+                          "placement",   "selfTest",        "errorPixels",   "transition", "msaaSamples",
+                          "camera",      "effects",         "constructed",   "renderer",   "points"})
     EXPECT_NE(json.find(std::string(1, '"').append(key).append("\": ")), std::string::npos) << key;
   EXPECT_EQ(jsonNumber(json, "framesDrawn"), 8);
   EXPECT_EQ(jsonNumber(json, "framesCounted"), 8);
@@ -85,6 +86,17 @@ TEST_F(Viewer, SeveralSamplesAPixelAreDrawnAndReported) {
   EXPECT_NEAR(edgeRow(hard), edgeRow(smooth), 1);
   EXPECT_NE(hard.rgb, smooth.rgb);
   EXPECT_LT(rmsDifference(hard, smooth), 8);
+}
+
+TEST_F(Viewer, AFlightIsFlownWithTheTransitionThatIsAskedFor) {
+  for (const std::string transition : {"blend", "none"}) {
+    const auto outcome = view({"--camera", "-10,8,0", "--flight", "descent", "--frames", "12", "--step", "0.1",
+                               "--transition", transition, "--stats", folder_ / "t.json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    const std::string json = readFile(folder_ / "t.json");
+    EXPECT_NE(json.find("\"transition\": \"" + transition + "\""), std::string::npos) << json;
+    EXPECT_EQ(jsonNumber(json, "uncoveredPixels"), 0);
+  }
 }
 
 TEST_F(Viewer, TheSameCameraGivesTheSamePictureTwice) {
