@@ -14,8 +14,8 @@ namespace terrane {
 struct TileMorph {
   float own = 0;                          ///< of all vertices that are on no edge
   std::array<float, kSideCount> sides{};  ///< by Side: edges without their ends, and corners
-  /// Bit e is set where the tile beyond edge e is coarser: its morph is 1, and the odd vertices of that edge are not
-  /// drawn.
+  /// Bit e is set where edge e is the parent's, all the way: the odd vertices of that edge are then not drawn. A
+  /// coarser tile beyond has none, and an equal one leaves them out too.
   std::uint8_t coarserEdges = 0;
 
   bool operator==(const TileMorph&) const = default;
@@ -24,6 +24,7 @@ struct TileMorph {
 struct DrawnTile {
   FacePath path;
   TileMorph morph;
+  bool skirts = false;  ///< some border does not meet what lies beyond, or not yet: skirts close it
 
   bool operator==(const DrawnTile&) const = default;
 };
