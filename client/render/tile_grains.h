@@ -16,8 +16,8 @@ namespace terrane {
 /// The finest class that a tile shows is so many levels coarser than the tile: with 2 pixels of error its grains are
 /// some pixels large.
 inline constexpr int kFinestClassBelow = 2;
-/// Meshes of 20, 80, 320 triangles (pebble_shapes.h); a class has the next finer one every second level.
-inline constexpr int kGrainMeshes = 3;
+/// Meshes of 20, 80, 320, 1280 triangles (pebble_shapes.h); a class has the next finer one every second level.
+inline constexpr int kGrainMeshes = 4;
 inline constexpr int grainMesh(int tileLevel, int classLevel) noexcept {
   const int finer = (tileLevel - classLevel - kFinestClassBelow) / 2;
   return finer < kGrainMeshes ? finer : kGrainMeshes - 1;

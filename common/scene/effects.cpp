@@ -43,7 +43,7 @@ constexpr std::array kEffects{
               EffectSide::Client, kDetailParameters},
     EffectRow{EffectKind::Dust, "dust", "grains and pebbles that lie on the ground, solid, where near enough to see",
               "the tiles' vertices; the sun for their shadows",
-              "three instanced meshes and a pass for shadows, a copy of the "
+              "four instanced meshes and a pass for shadows, a copy of the "
               "depth buffer and an instance a grain in view; nothing where no grain would be a pixel wide",
               EffectSide::Client, kDustParameters},
 };
