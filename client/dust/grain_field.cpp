@@ -12,7 +12,7 @@ namespace terrane {
 namespace {
 
 /// Diameters of a class, as shares of its cell: one octave, so that classes follow one another without gap or overlap.
-constexpr double kLeastShare = 0.2, kMostShare = 0.4;
+constexpr double kLeastShare = 0.2, kMiddleShare = 0.283, kMostShare = 0.4;
 /// Of the mean share of a cell that a grain covers when numbers fall with the cube of size, pi/4 E[d^2].
 constexpr double kMeanCover = 0.0581;
 static_assert(kMostCover < kMeanCover);
@@ -68,7 +68,7 @@ double patchValue(const glm::dvec3& at) noexcept {
 }
 
 /// Of a patch, as a multiple of the mean: some ground is all but bare.
-constexpr double kDensest = 2.4, kBarest = 0.1;
+constexpr double kDensest = 2.1, kBarest = 0.1;
 double density(double patch) noexcept {
   return kBarest + (kDensest - kBarest) * std::clamp((patch - 0.33) / 0.38, 0.0, 1.0);
 }
@@ -101,9 +101,10 @@ GrainField::GrainField(const DustSettings& settings, double radiusMeters) noexce
     : settings_(settings), radiusMeters_(radiusMeters) {
   settings_.cover = std::clamp(settings.cover, 0.0, kMostCover);
   if (!(settings_.cover > 0)) return;
-  while (coarsest_ < kLastClass && kLeastShare * cellMeters(coarsest_) >= settings_.largestMeters) ++coarsest_;
+  const auto middle = [this](int classLevel) { return kMiddleShare * cellMeters(classLevel); };
+  while (coarsest_ < kLastClass && middle(coarsest_) > settings_.largestMeters) ++coarsest_;
   finest_ = coarsest_ - 1;
-  while (finest_ + 1 < kLastClass && kMostShare * cellMeters(finest_ + 1) > settings_.smallestMeters) ++finest_;
+  while (finest_ + 1 < kLastClass && middle(finest_ + 1) >= settings_.smallestMeters) ++finest_;
 }
 
 double GrainField::cellMeters(int classLevel) const noexcept {

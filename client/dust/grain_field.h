@@ -44,7 +44,7 @@ class GrainField {
   /// Precondition: 0 < smallestMeters <= largestMeters, radiusMeters > 0.
   GrainField(const DustSettings& settings, double radiusMeters) noexcept;
 
-  /// The classes that have grains at all; none if coarsest > finest.
+  /// The classes that have grains: those whose middle size is among the sizes wanted; none if coarsest > finest.
   int coarsestClass() const noexcept { return coarsest_; }
   int finestClass() const noexcept { return finest_; }
   /// No grain of a class is wider.

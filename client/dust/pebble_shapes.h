@@ -28,6 +28,6 @@ struct PebbleMesh {
 PebbleMesh pebbleMesh(int splits);
 
 /// The sphere that stands for all shapes where exactness is of no use (shadows): its radius.
-inline constexpr float kPebbleMeanRadius = 0.86f;
+inline constexpr float kPebbleMeanRadius = 0.85f;
 
 }  // namespace terrane

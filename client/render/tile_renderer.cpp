@@ -266,7 +266,7 @@ struct TileRenderer::State {
                   });
     }
     if (settings.transition == Transition::Blend) blendParents(camera, list, settings, placement, stats);
-    if (settings.effectPasses) drawPasses(camera, ordered, settings, stats);
+    if (settings.effectPasses && !settings.wireframe) drawPasses(camera, ordered, settings, stats);
     return stats;
   }
 

@@ -115,9 +115,8 @@ TileBorders bordersOf(const DrawnCut& cut, const FacePath& path) {
     morph.sides[corner] = all.value(morph.own);
   }
   borders.meet = std::ranges::none_of(around, &Around::tooCoarse);
-}
-morph.coarserEdges = parentsEdges(morph.sides);
-return borders;
+  morph.coarserEdges = parentsEdges(morph.sides);
+  return borders;
 }
 
 }  // namespace terrane

@@ -69,7 +69,7 @@ TEST_F(GpuSelfTest, OnlyEffectsThatTheSceneNamesAreConstructed) {
   ASSERT_TRUE(TileRenderer::create({}));
   EXPECT_TRUE(constructionCounts().empty());
   ASSERT_TRUE(TileRenderer::create(shippedScene("moon").effects));
-  const std::vector<std::pair<std::string, int>> once{{"effect.detail", 1}, {"effect.sun", 1}};
+  const std::vector<std::pair<std::string, int>> once{{"effect.detail", 1}, {"effect.dust", 1}, {"effect.sun", 1}};
   EXPECT_EQ(constructionCounts(), once);
 }
 
