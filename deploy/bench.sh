@@ -14,7 +14,7 @@ for argument in "$@"; do
 done
 deploy/install.sh >&2
 cmake --preset release >&2
-cmake --build --preset release --target terrane-server terrane-view terrane-accuracy bench_tile_build bench_viewer >&2
+cmake --build --preset release --target terrane-server terrane-view terrane-accuracy bench_tile_build bench_viewer bench_effects >&2
 bin=build/release/bin
 tiles=25 rounds=5 seconds=4
 $quick && tiles=5 rounds=1 seconds=1
@@ -34,6 +34,10 @@ report=$work/report.md
   echo "**Viewing** at 1280×720 on software OpenGL (llvmpipe), beside a bare loop that draws the same triangles:"
   echo
   tests/bench/viewer_bench.sh "$bin" "$($quick && echo 10 || echo 60)"
+  echo
+  echo "**What a seamless, real ground costs**, at 1280×720 on software OpenGL: every tile half way between two levels, the effects detail and dust; each left out, and several samples a pixel put in:"
+  echo
+  "$bin/bench_effects" --frames "$($quick && echo 5 || echo 30)"
 } | tee "$report"
 
 "$bin/terrane-accuracy" $($quick && echo --quick) --only summary --out "$work/accuracy" >&2

@@ -140,7 +140,6 @@ struct TileRenderer::State {
   GpuTiles tiles;
   std::array<std::optional<TileProgram>, std::size_t{2} * kTilePurposeCount * kPlacementCount> programs;
   std::optional<RenderTarget> windowTarget, coverageTarget;
-  std::vector<std::unique_ptr<EffectPass>> passes;
   std::optional<LevelBlend> levelBlend;  ///< once asked for
   std::vector<float> scratch;
 

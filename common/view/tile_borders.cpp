@@ -23,9 +23,6 @@ struct Around {
       case Beyond::TooCoarse:
         tooCoarse = true;
         return;
-      case Beyond::TooCoarse:
-        tooCoarse = true;
-        return;
       case Beyond::Coarser:
         coarser = true;
         return;

@@ -26,18 +26,12 @@ DetailStrength evenStrength(float finestPixels) {
   return strength;
 }
 
-std::vector<EffectCall> onlySun() {
-  std::vector<EffectCall> effects = shippedScene("moon").effects;
-  std::erase_if(effects, [](const EffectCall& call) { return call.kind != EffectKind::Sun; });
-  return effects;
-}
-
 class Detail : public GlTest {
  protected:
   void SetUp() override {
     GlTest::SetUp();
-    renderer_ = makeRenderer(onlySun());
-    effects_ = makeEffects(onlySun());
+    renderer_ = makeRenderer(moonSunlight());
+    effects_ = makeEffects(moonSunlight());
   }
 
   static Camera cameraAt(double heightMeters, double pitchDegrees, int scale) {

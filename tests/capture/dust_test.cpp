@@ -25,7 +25,8 @@ constexpr std::uint64_t kSeed = 20261126;
 std::vector<EffectCall> effects(bool sun, bool dust) {
   std::vector<EffectCall> calls = shippedScene("moon").effects;
   std::erase_if(calls, [&](const EffectCall& call) {
-    return (call.kind == EffectKind::Sun && !sun) || (call.kind == EffectKind::Dust && !dust);
+    return call.kind == EffectKind::Detail || (call.kind == EffectKind::Sun && !sun) ||
+           (call.kind == EffectKind::Dust && !dust);
   });
   return calls;
 }

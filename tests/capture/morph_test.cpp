@@ -132,7 +132,7 @@ PictureDifference compare(const Image& a, const Image& b) {
 
 TEST_F(MorphTest, FourFullyMorphedChildrenLookLikeTheirParent) {
   for (const bool baseline : {false, true}) {
-    auto renderer = makeRenderer(shippedScene("moon").effects, {.forceBaseline = baseline});
+    auto renderer = makeRenderer(moonSunlight(), {.forceBaseline = baseline});
     for (const int level : {1, 5, 12, 20}) {
       const auto line = (std::uint32_t{1} << level) / 2;
       const TilePointer parent = moon().tile(FacePath::cubeTile(0, level, line, line));

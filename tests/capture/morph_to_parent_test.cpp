@@ -136,7 +136,7 @@ class MorphToParent : public GlTest {
 TEST_F(MorphToParent, GivesItsBits) {
   std::mt19937_64 random(kSeed);
   std::printf("seed %llu, %zu children\n", static_cast<unsigned long long>(kSeed), childrenToCompare());
-  auto renderer = makeRenderer(shippedScene("moon").effects);
+  auto renderer = makeRenderer(moonSunlight());
   std::array<Found, kExactPlacements.size()> found;
   std::set<int> levels, faces;
   for (std::size_t round = 0; 4 * round < childrenToCompare(); ++round) {

@@ -29,7 +29,7 @@ constexpr double kErrorPixels = 1;
 class PlacementTest : public GlTest {
  protected:
   static std::unique_ptr<TileRenderer> makeMoonRenderer(const RendererOptions& options = {}) {
-    return makeRenderer(shippedScene("moon").effects, options);
+    return makeRenderer(moonSunlight(), options);
   }
   static std::vector<FacePath> uploadSettled(TileRenderer& renderer, const Camera& camera) {
     std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);

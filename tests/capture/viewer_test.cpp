@@ -141,7 +141,8 @@ TEST_F(Viewer, ExplainNamesTheSceneOfEveryEffectAndWhatItCosts) {
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("effect sun: on"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("ms a frame"), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("constructed: effect.detail 1, effect.sun 1"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("constructed: effect.detail 1, effect.dust 1, effect.sun 1"), std::string::npos)
+      << outcome.output;
 }
 
 TEST(ViewerOfABareSphere, ConstructsNoEffect) {

@@ -49,7 +49,8 @@ Flight walk(double radiusMeters) {
 }
 
 Flight flightOf(PopFlight flight, double radiusMeters) {
-  return flight == PopFlight::Walk ? walk(radiusMeters) : require(builtInFlight("descent", kLongitude, kLatitude));
+  return flight == PopFlight::Walk ? walk(radiusMeters)
+                                   : require(builtInFlight("descent", kLongitude, kLatitude, radiusMeters));
 }
 
 /// Tiles that have nothing in common with a set.
@@ -110,7 +111,8 @@ PopMeter::PopMeter(TileSource& moon, PopFlight flight, Transition transition, in
       flight_(flightOf(flight, moon.selection().radiusMeters)),
       widthPixels_(widthPixels),
       heightPixels_(heightPixels),
-      renderer_(require(TileRenderer::create(shippedScene("moon").effects))),
+      renderer_(require(
+          TileRenderer::create(shippedScene("moon").effects, {.bodyRadiusMeters = moon.selection().radiusMeters}))),
       target_(require(RenderTarget::create(widthPixels, heightPixels))) {
   settings_.transition = transition;
 }

@@ -13,6 +13,12 @@ TestScene shippedScene(const std::string& name) {
   return {scene.bodies.front(), scene.effects};
 }
 
+std::vector<EffectCall> moonSunlight() {
+  std::vector<EffectCall> effects = shippedScene("moon").effects;
+  std::erase_if(effects, [](const EffectCall& call) { return call.kind != EffectKind::Sun; });
+  return effects;
+}
+
 TileSource::TileSource(const std::string& sceneName)
     : builder_(shippedScene(sceneName).body, WireSettings{}, bestSimdPath()),
       field_(makeHeightField(builder_.body(), bestSimdPath())) {}

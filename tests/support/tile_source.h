@@ -20,6 +20,8 @@ struct TestScene {
   std::vector<EffectCall> effects;
 };
 TestScene shippedScene(const std::string& name);
+/// The Moon's sunlight without what else is drawn over its tiles.
+std::vector<EffectCall> moonSunlight();
 
 /// The tiles of one body, built on demand and kept.
 class TileSource {

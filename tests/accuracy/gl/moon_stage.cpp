@@ -20,7 +20,7 @@ Camera cameraOf(const MoonView& view, const TileSource& moon, int widthPixels, i
 Result<std::unique_ptr<MoonStage>> MoonStage::create(const MoonView& view, int widthPixels, int heightPixels) {
   auto target = RenderTarget::create(widthPixels, heightPixels);
   if (!target) return target.error();
-  auto renderer = TileRenderer::create(shippedScene("moon").effects);
+  auto renderer = TileRenderer::create(moonSunlight());
   if (!renderer) return renderer.error();
   std::unique_ptr<MoonStage> stage(new MoonStage(view, widthPixels, heightPixels, std::move(*target)));
   stage->renderer_ = std::move(*renderer);
