@@ -1,5 +1,5 @@
-// What a grain takes of the light where the scene is seen behind its box: the exact shadow of its spheroid, and the part of the sky that it
-// hides from the ground beside it. Multiplies the colour.
+// What a grain takes of the light where the scene is seen through its box: the shadow of its spheroid, by the ray from there to the sun, and
+// the part of the sky that it hides. Multiplies the colour.
 #include "ground_position.glsl"
 #ifdef EFFECT_SUN
 #include "sun.glsl"

@@ -12,7 +12,7 @@ flat out float centerHeight;  // of the middle over the ground, metres
 flat out float shadowLight;   // what is left in the shadow of the light without
 
 const float kOcclusionReach = 2.2;  // half widths from the middle
-const float kShadowReach = 5.5;
+const float kShadowReach = 5.5;     // as grain_shadow.frag.glsl has it
 
 void main() {
   LyingGrain grain = lyingGrain();
@@ -21,14 +21,14 @@ void main() {
   centerHeight = grain.center;
   float radius = PEBBLE_RADIUS * grain.radius, height = radius * grain.flattening;
   sizes = vec3(max(radius, 1e-9), max(height, 1e-9), length(center) / (pixelsPerRadian * max(radius, 1e-9)));
-  vec3 along = abs(up.x) < 0.8 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  vec3 along = abs(up.x) < 0.8 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);  // any, but for a shadow's direction
   float reach = 0.0;
   shadowLight = 1.0;
 #ifdef EFFECT_SUN
   float elevation = dot(towardsSun, up);
-  along = -(towardsSun - elevation * up);
-  float across = length(along);
-  along = across > 1e-4 ? along / across : (abs(up.x) < 0.8 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
+  vec3 fromSun = elevation * up - towardsSun;
+  float across = length(fromSun);
+  if (across > 1e-4) along = fromSun;
   if (elevation > 0.0) {
     float light = max(signedSunlight(up, -normalize(center)), 0.0);
     float top = max(grain.center + height, 0.0) / max(radius, 1e-9);

@@ -141,8 +141,17 @@ TEST_F(Viewer, ExplainNamesTheSceneOfEveryEffectAndWhatItCosts) {
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("effect sun: on"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("ms a frame"), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("constructed: effect.detail 1, effect.dust 1, effect.sun 1"), std::string::npos)
-      << outcome.output;
+  for (const char* constructed : {"effect.sun 1", "effect.detail 1", "effect.dust 1"})
+    EXPECT_NE(outcome.output.find(constructed, outcome.output.find("constructed: ")), std::string::npos)
+        << outcome.output;
+}
+
+TEST_F(Viewer, AnEffectIsLeftOutAsIfTheSceneDidNotNameIt) {
+  const auto outcome = view({"--explain", "--without", "dust"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("effect dust: off"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("why    --without dust"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.output.find("effect.dust"), std::string::npos) << outcome.output;
 }
 
 TEST(ViewerOfABareSphere, ConstructsNoEffect) {
