@@ -34,8 +34,8 @@ class DustInstances::View {
   }
 
  private:
-  static constexpr double kReach =
-      8;  ///< radii that a grain's shadow may be away from its root (grain_shadow.vert.glsl)
+  /// Radii that a grain's shadow may be away from its root (grain_shadow.vert.glsl).
+  static constexpr double kReach = 7;
   glm::dvec3 camera_;
   float unseen_;
   glm::vec3 right_, up_, backward_;

@@ -15,15 +15,15 @@ vec3 groundRelative(vec2 pixelCentre, float depth) {
   return rays * vec3(pixelCentre * (2.0 / pictureSize) - 1.0, 1.0) * (nearMeters / max(depth, 1e-30));
 }
 
-// The square of the way on the ground to the next pixel on the axis, on the side where it is shorter: beyond an edge of what is seen lies
-// something else.
-float wayToNextSquared(vec2 pixelCentre, vec2 axis, vec3 here) {
-  vec3 after = groundRelative(pixelCentre + axis, depthAt(pixelCentre + axis)) - here;
-  vec3 before = groundRelative(pixelCentre - axis, depthAt(pixelCentre - axis)) - here;
-  return min(dot(after, after), dot(before, before));
+// The way on the ground to the next pixel on the axis, from the side where it is shorter: beyond an edge of what is seen lies something else.
+vec3 alongGround(vec2 pixelCentre, vec2 axis, vec3 here) {
+  vec3 ahead = groundRelative(pixelCentre + axis, depthAt(pixelCentre + axis)) - here;
+  vec3 behind = here - groundRelative(pixelCentre - axis, depthAt(pixelCentre - axis));
+  return dot(ahead, ahead) < dot(behind, behind) ? ahead : behind;
 }
 
 // How long a pixel is on the ground, metres, the way in which it is longer.
 float footprintMeters(vec2 pixelCentre, vec3 here) {
-  return sqrt(max(wayToNextSquared(pixelCentre, vec2(1.0, 0.0), here), wayToNextSquared(pixelCentre, vec2(0.0, 1.0), here)));
+  vec3 across = alongGround(pixelCentre, vec2(1.0, 0.0), here), up = alongGround(pixelCentre, vec2(0.0, 1.0), here);
+  return sqrt(max(dot(across, across), dot(up, up)));
 }
