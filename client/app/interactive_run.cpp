@@ -142,6 +142,7 @@ Done InteractiveRun::begin() {
 ViewSession::View InteractiveRun::viewNow(double seconds) {
   const auto [width, height] = window_.framebufferSize();
   ViewSession::View view;
+  view.ahead = true;
   view.widthPixels = std::max(width, 16);
   view.heightPixels = std::max(height, 16);
   view.seconds = std::min(seconds, kLongestMorphStepSeconds);

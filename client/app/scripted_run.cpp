@@ -116,6 +116,7 @@ Result<FlightPlan> ScriptedRun::plan() {
 Done ScriptedRun::settle(const ViewSession::View& view, bool wholly) {
   const auto begin = Clock::now();
   ViewSession::View waiting = view;
+  waiting.ahead = false;
   waiting.seconds = 1e9;  // nobody sees it come: changes of level take no time
   for (;;) {
     const UpdateReport report = session_->update(waiting, kUnlimitedUpload);
@@ -202,7 +203,7 @@ Done ScriptedRun::flyPlan(const FlightPlan& plan) {
     const PlannedFrame& frame = plan.frames[i];
     const auto [width, height] = pictureSize();
     const double seconds = i == 0 ? 0 : frame.seconds - plan.frames[i - 1].seconds;
-    const ViewSession::View view{frame.pose, plan.aboveGround, width, height, seconds};
+    const ViewSession::View view{frame.pose, plan.aboveGround, width, height, seconds, !options_.settle};
     // A flight begins with a full view, so that what it shows does not depend on how fast the first tiles came.
     if (options_.settle || (i == 0 && plan.points > 0))
       if (const Done settled = settle(view, options_.settle); !settled) return settled.error();

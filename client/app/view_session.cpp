@@ -74,7 +74,9 @@ struct ViewSession::State {
   ViewPose resolved(const View& view) const;
   double altitudeAboveDrawn(const ViewPose& viewed) const;
   std::vector<WantedTile> groundChain(double allowedPixels) const;
-  bool requestTiles(double allowedPixels, bool groundFirst);
+  bool requestTiles(double allowedPixels, bool groundFirst, bool ahead);
+  void addBesidePicture(double allowedPixels, std::unordered_set<FacePath>& known,
+                        std::vector<WantedTile>& wanted) const;
   void changeLevelsOverTime(bool wanted);
   bool chooseTiles(const Camera& from, double allowedPixels, double seconds);
 };
@@ -213,7 +215,7 @@ std::vector<WantedTile> ViewSession::State::groundChain(double allowedPixels) co
 
 // Asks for the selection and the ground; true when the ground's finest wanted tile is there. groundFirst: the camera's
 // own height depends on the ground, so until that is known no fine tile is asked for where the camera only seems to be.
-bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst) {
+bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst, bool ahead) {
   std::vector<WantedTile> wanted = selection.wanted;
   const std::vector<WantedTile> chain = groundChain(allowedPixels);
   const bool groundKnown = stream->resident(chain.back().path) != nullptr;
@@ -226,14 +228,25 @@ bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst) {
   known.reserve(wanted.size() * 2);
   for (const WantedTile& tile : wanted) known.insert(tile.path);
   for (const WantedTile& tile : chain)
-    if (!known.contains(tile.path)) wanted.push_back(tile);
+    if (known.insert(tile.path).second) wanted.push_back(tile);
   std::stable_sort(wanted.begin(), wanted.end(),
                    [](const WantedTile& a, const WantedTile& b) { return a.path.level() < b.path.level(); });
   wantedCount = wanted.size();
   missing = static_cast<std::size_t>(std::count_if(
       wanted.begin(), wanted.end(), [&](const WantedTile& tile) { return stream->resident(tile.path) == nullptr; }));
+  if (ahead) addBesidePicture(allowedPixels, known, wanted);
   stream->want(wanted);
   return groundKnown;
+}
+
+void ViewSession::State::addBesidePicture(double allowedPixels, std::unordered_set<FacePath>& known,
+                                          std::vector<WantedTile>& wanted) const {
+  const SelectionSettings settings{.errorPixels = allowedPixels};
+  const TileSelection wide = selectTiles(
+      widened(camera, kShareAhead), stream->body()->selection,
+      [this](const FacePath& path) { return stream->known(path); }, settings);
+  for (const WantedTile& tile : wide.wanted)
+    if (known.insert(tile.path).second) wanted.push_back(tile);
 }
 
 void ViewSession::State::changeLevelsOverTime(bool wanted) {
@@ -289,7 +302,7 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   UpdateReport report;
   report.changed = moved || levelsChanged;
   if (!frozen) {
-    const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround);
+    const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround, view.ahead);
     report.complete = s.selection.complete && (groundKnown || !view.aboveGround);
     const bool still =
         pose.altitudeMeters == altitudeDue && (!view.aboveGround || pose.altitudeMeters == altitudeBefore);

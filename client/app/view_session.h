@@ -54,6 +54,7 @@ class ViewSession {
     bool aboveGround = false;
     int widthPixels = 0, heightPixels = 0;
     double seconds = 0;  ///< since the update before: changes of level morph over time
+    bool ahead = false;  ///< ask for what lies beside the picture too, after all that is in it
   };
   UpdateReport update(const View& view, const UploadBudget& budget);
 

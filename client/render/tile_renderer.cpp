@@ -179,7 +179,7 @@ struct TileRenderer::State {
     std::vector<Entry> entries;
     entries.reserve(list.size());
     for (const DrawnTile& drawn : list) {
-      if (const auto draw = makeTileDraw(tiles, drawn, skirts || drawn.skirts, capabilities.bufferWords)) {
+      if (const auto draw = makeTileDraw(tiles, drawn, skirts, capabilities.bufferWords)) {
         const Sphere& sphere = draw->tile->metadata.sphere;
         entries.push_back({glm::length(sphere.center - camera.positionBody) - sphere.radiusMeters, *draw});
       }

@@ -64,6 +64,16 @@ ViewPose poseFromCamera(const Camera& camera) noexcept {
   return pose;
 }
 
+Camera widened(const Camera& camera, double share) noexcept {
+  const auto longer = [share](int pixels) { return pixels + 2 * static_cast<int>(std::ceil(share * pixels)); };
+  Camera wide = camera;
+  wide.widthPixels = longer(camera.widthPixels);
+  wide.heightPixels = longer(camera.heightPixels);
+  const double scale = static_cast<double>(wide.heightPixels) / camera.heightPixels;
+  wide.verticalFieldOfView = 2 * std::atan(scale * std::tan(camera.verticalFieldOfView / 2));
+  return wide;
+}
+
 glm::dmat3 viewRotation(const Camera& camera) noexcept {
   const glm::dvec3 &r = camera.right, &u = camera.up, &b = camera.backward;
   return glm::dmat3(r.x, u.x, b.x, r.y, u.y, b.y, r.z, u.z, b.z);

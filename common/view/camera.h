@@ -35,6 +35,12 @@ Camera cameraFromPose(const ViewPose& pose, double radiusMeters, double vertical
 /// The inverse. At a pitch of +-90 degrees the heading is taken from the up vector.
 ViewPose poseFromCamera(const Camera& camera) noexcept;
 
+/// The same camera with a picture wider and higher by this share of it on every side, and pixels as large as before.
+Camera widened(const Camera& camera, double share) noexcept;
+/// A viewer asks for what lies beside the picture too: a tile that is late when it comes into view can only be drawn
+/// coarser than those beside it, and takes them with it.
+inline constexpr double kShareAhead = 0.25;
+
 /// World-to-camera rotation (no translation: positions come camera-relative).
 glm::dmat3 viewRotation(const Camera& camera) noexcept;
 /// Reversed depth, infinite far plane: clip z = near, w = distance, so depth is 1 at the near plane and 0 at infinity.

@@ -24,7 +24,6 @@ struct TileMorph {
 struct DrawnTile {
   FacePath path;
   TileMorph morph;
-  bool skirts = false;  ///< some border does not meet what lies beyond, or not yet: skirts close it
 
   bool operator==(const DrawnTile&) const = default;
 };

@@ -1,7 +1,7 @@
 #include "common/view/level_transitions.h"
 
 #include <algorithm>
-#include <cmath>
+#include <unordered_set>
 
 namespace terrane {
 
@@ -48,31 +48,9 @@ class LevelTransitions::Wanted {
 
 namespace {
 
-/// Two values this close are one, moved by a step that was rounded.
-constexpr double kSameMorph = 1e-6;
-
-TileMorph morphedWholly(float value) {
-  TileMorph morph;
-  morph.own = value;
-  morph.sides.fill(value);
-  return morph;
-}
-
-/// Sides go towards the goal's by a step at most; false if some have still to go.
-bool approach(TileMorph& shown, const TileMorph& goal, double step) {
-  bool arrived = true;
-  shown.own = goal.own;
-  for (std::size_t side = 0; side < kSideCount; ++side) {
-    const auto from = static_cast<double>(shown.sides[side]), to = static_cast<double>(goal.sides[side]);
-    if (std::fabs(to - from) <= step + kSameMorph) {
-      shown.sides[side] = goal.sides[side];
-    } else {
-      shown.sides[side] = static_cast<float>(from + std::copysign(step, to - from));
-      arrived = false;
-    }
-  }
-  shown.coarserEdges = parentsEdges(shown.sides);
-  return arrived;
+template <class Predicate>
+bool everySideOf(const TileMorph& morph, Predicate holds) {
+  return std::ranges::all_of(morph.sides, holds);
 }
 
 /// The tiles around one, at its own level.
@@ -94,49 +72,25 @@ std::vector<DrawnTile> LevelTransitions::advance(std::span<const FacePath> wante
     split(wanted, canMorph);
     merge(wanted);
     fade(wanted, seconds, canMorph);
+    hurry(wanted, canMorph);
   }
-  return show(wanted);
-}
-
-std::vector<DrawnTile> LevelTransitions::show(const Wanted& wanted) {
   std::vector<DrawnTile> drawn;
-  std::unordered_map<FacePath, TileMorph> shown;
-  std::unordered_set<FacePath> loose;
   settled_ = true;
   for (const FacePath& path : cut_.tiles()) {
-    const auto [goal, meet] = bordersOf(cut_, path);
-    const auto before = shown_.find(path);
-    TileMorph& morph = shown[path] = before == shown_.end() ? goal : before->second;
-    if (!approach(morph, goal, borderStep_) || !meet) loose.insert(path);
-    drawn.push_back({path, morph});
-    settled_ = settled_ && wanted.contains(path) && morph.own == 0;
-  }
-  shown_ = std::move(shown);
-  if (!loose.empty()) {
-    settled_ = false;
-    closeBorders(drawn, loose);
+    drawn.push_back({path, morphOf(cut_, path)});
+    settled_ = settled_ && wanted.contains(path) && drawn.back().morph.own == 0;
   }
   return drawn;
 }
 
-/// Skirts on both sides of what does not meet.
-void LevelTransitions::closeBorders(std::vector<DrawnTile>& drawn, const std::unordered_set<FacePath>& loose) {
-  std::unordered_set<FacePath> skirted = loose;
-  for (const DrawnTile& tile : drawn) {
-    forEachNeighbour(tile.path, [&](const FacePath& neighbour) {
-      const auto leaf = cut_.leafOver(neighbour);
-      if (!leaf) return;
-      if (loose.contains(tile.path)) skirted.insert(*leaf);
-      if (loose.contains(*leaf)) skirted.insert(tile.path);
-    });
-  }
-  for (DrawnTile& tile : drawn) tile.skirts = skirted.contains(tile.path);
-}
-
 void LevelTransitions::settleAtOnce(const Wanted& wanted) {
   cut_.clear();
-  shown_.clear();
   for (const FacePath& path : wanted.tiles()) cut_.insert(path, 0);
+}
+
+void LevelTransitions::jump(const Wanted& wanted) {
+  settleAtOnce(wanted);
+  ++counts_.jumps;
 }
 
 void LevelTransitions::leaveAndEnter(const Wanted& wanted) {
@@ -155,25 +109,49 @@ void LevelTransitions::leaveAndEnter(const Wanted& wanted) {
 /// A tile comes in as it is wanted, or coarser where what is drawn beside it is not that far yet.
 void LevelTransitions::enter(const FacePath& path) {
   for (FacePath entering = path; !cut_.isRefined(entering); entering = entering.parent()) {
-    if (!wouldMeet(entering)) continue;
+    if (coarserBeside(entering)) continue;
     cut_.insert(entering, 0);
     return;
   }
   cut_.insert(path, 0);
 }
 
-/// In the cut, the tile would have nothing beside it that is too coarse.
-bool LevelTransitions::wouldMeet(const FacePath& path) const {
-  for (int side = 0; side < kSideCount; ++side)
-    if (beyond(cut_, path, static_cast<Side>(side)) == Beyond::TooCoarse) return false;
-  return true;
+/// A tile of the cut beside this one that is more than a level coarser.
+std::optional<FacePath> LevelTransitions::coarserBeside(const FacePath& path) const {
+  std::optional<FacePath> found;
+  forEachNeighbour(path, [&](const FacePath& neighbour) {
+    const auto leaf = cut_.leafOver(neighbour);
+    if (leaf && leaf->level() < path.level() - 1) found = leaf;
+  });
+  return found;
+}
+
+/// Tiles have come in beside others that are not yet as they are to be, and are now too fine or too coarse for them:
+/// those change at once. That is at the rim of the view, where tiles come in.
+void LevelTransitions::hurry(const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph) {
+  for (bool again = true; again;) {
+    again = false;
+    for (const FacePath& path : cut_.tiles()) {
+      const std::optional<FacePath> coarse = coarserBeside(path);
+      if (!coarse) continue;
+      if (wanted.coarserLevel(path) >= 0) {
+        mergeAtOnce(path.parent());
+      } else if (wanted.refines(*coarse)) {
+        splitAtOnce(*coarse, wanted, canMorph);
+      } else {
+        return jump(wanted);
+      }
+      ++counts_.hurried;
+      again = true;
+      break;
+    }
+  }
 }
 
 void LevelTransitions::mergeAtOnce(const FacePath& parent) {
   for (const FacePath& path : cut_.tiles())
     if (path.level() > parent.level() && path.ancestor(parent.level()) == parent) cut_.erase(path);
   cut_.insert(parent, 0);
-  shown_[parent] = morphedWholly(0);
 }
 
 void LevelTransitions::splitAtOnce(const FacePath& path, const Wanted& wanted,
@@ -181,20 +159,8 @@ void LevelTransitions::splitAtOnce(const FacePath& path, const Wanted& wanted,
   cut_.erase(path);
   for (int digit = 0; digit < 4; ++digit) {
     const FacePath child = path.child(digit);
-    if (!wanted.overlaps(child)) continue;
-    const float own = canMorph(child) ? 1.0f : 0.0f;
-    cut_.insert(child, own);
-    shown_[child] = morphedWholly(own);
+    if (wanted.overlaps(child)) cut_.insert(child, canMorph(child) ? 1.0f : 0.0f);
   }
-}
-
-/// The tile is at this value all around, and is to be.
-bool LevelTransitions::rests(const FacePath& path, float value) const {
-  const auto shown = shown_.find(path);
-  const auto isThere = [&](const TileMorph& morph) {
-    return morph.own == value && std::ranges::all_of(morph.sides, [&](float side) { return side == value; });
-  };
-  return isThere(morphOf(cut_, path)) && (shown == shown_.end() || isThere(shown->second));
 }
 
 void LevelTransitions::split(const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph) {
@@ -202,7 +168,7 @@ void LevelTransitions::split(const Wanted& wanted, const std::function<bool(cons
   std::vector<FacePath> ready;
   for (const FacePath& path : cut_.tiles()) {
     if (!wanted.refines(path) || cut_.own(path) != 0) continue;
-    if (rests(path, 0)) ready.push_back(path);
+    if (everySideOf(morphOf(cut_, path), [](float side) { return side == 0; })) ready.push_back(path);
   }
   for (const FacePath& path : ready) {
     splitAtOnce(path, wanted, canMorph);
@@ -227,7 +193,8 @@ bool LevelTransitions::isReadyToMerge(const FacePath& parent) const {
   for (int digit = 0; digit < 4; ++digit) {
     const FacePath child = parent.child(digit);
     if (!cut_.contains(child)) continue;
-    if (!rests(child, 1)) return false;
+    const TileMorph morph = morphOf(cut_, child);
+    if (morph.own != 1 || !everySideOf(morph, [](float side) { return side == 1; })) return false;
   }
   // The parent's equals must be their own surface: a border between equals is the larger of the two.
   bool equalsAreWhole = true;
@@ -250,14 +217,12 @@ void LevelTransitions::merge(const Wanted& wanted) {
 
 void LevelTransitions::fade(const Wanted& wanted, double seconds,
                             const std::function<bool(const FacePath&)>& canMorph) {
-  borderStep_ = seconds / settings_.secondsPerLevel;
   for (const FacePath& path : cut_.tiles()) {
     const bool merging = path.level() > 0 && wanted.coarserLevel(path) >= 0 && mayMerge(path.parent());
     const float goal = merging ? 1.0f : 0.0f, now = cut_.own(path);
     if (now == goal) continue;
     // Many levels to go: each takes less.
     const double step = seconds / settings_.secondsPerLevel * (1 + wanted.levelsAway(path));
-    borderStep_ = std::max(borderStep_, step);
     const auto next = static_cast<float>(goal > now ? std::min(1.0, static_cast<double>(now) + step)
                                                     : std::max(0.0, static_cast<double>(now) - step));
     cut_.setOwn(path, canMorph(path) ? next : goal);

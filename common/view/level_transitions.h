@@ -2,22 +2,19 @@
 // From what selection wants drawn to what is drawn: every change of level is a morph that begins and ends in a picture
 // without a change. A tile is replaced by its children only while it is its own surface, all around; they begin as that
 // very surface, fully morphed, and grow into their own. Children are replaced by their parent only when they have
-// become its surface, all around. So nothing pops, be it the camera that moved or a tile that came late.
-//
-// Borders that both sides compute alike (tile_borders.h) close what is drawn. Where a tile enters or leaves the view,
-// those beside it are to have another border at once, or stand beside one that they cannot meet yet, more than a level
-// away: their borders then move there over time too, and skirts close them (DrawnTile::skirts) until they have arrived.
+// become its surface, all around. So nothing pops, be it the camera that moved or a tile that came late, and what is
+// drawn is always closed: 2:1 balanced, with borders that both sides compute alike (tile_borders.h).
 //
 // What is drawn lags behind what is wanted, by secondsPerLevel for a level, and less for each where many are missing.
-// Tiles that enter the view come in at once, as what they are to be.
+// Tiles that enter the view come in at once, as what they are to be. Where the rules cannot be kept (the camera
+// jumped), everything is drawn as wanted at once: that is a pop, and counted.
 //
 // One thread. Deterministic: what is drawn follows from the calls alone.
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
-#include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "common/view/tile_borders.h"
@@ -32,6 +29,8 @@ struct TransitionSettings {
 struct TransitionCounts {
   std::uint64_t splits = 0, merges = 0;
   std::uint64_t entered = 0, left = 0;
+  std::uint64_t hurried = 0;  ///< splits and merges that could not wait, at the rim of the view
+  std::uint64_t jumps = 0;    ///< all at once, visibly
   bool operator==(const TransitionCounts&) const = default;
 };
 
@@ -52,7 +51,8 @@ class LevelTransitions {
   class Wanted;
   void leaveAndEnter(const Wanted& wanted);
   void enter(const FacePath& path);
-  bool wouldMeet(const FacePath& path) const;
+  std::optional<FacePath> coarserBeside(const FacePath& path) const;
+  void hurry(const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph);
   void split(const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph);
   void splitAtOnce(const FacePath& path, const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph);
   void merge(const Wanted& wanted);
@@ -60,16 +60,12 @@ class LevelTransitions {
   void fade(const Wanted& wanted, double seconds, const std::function<bool(const FacePath&)>& canMorph);
   bool mayMerge(const FacePath& parent) const;
   bool isReadyToMerge(const FacePath& parent) const;
+  void jump(const Wanted& wanted);
   void settleAtOnce(const Wanted& wanted);
-  bool rests(const FacePath& path, float value) const;
-  std::vector<DrawnTile> show(const Wanted& wanted);
-  void closeBorders(std::vector<DrawnTile>& drawn, const std::unordered_set<FacePath>& loose);
 
   TransitionSettings settings_;
   TransitionCounts counts_;
   DrawnCut cut_;
-  std::unordered_map<FacePath, TileMorph> shown_;  ///< of the cut's tiles; follows what their borders are to be
-  double borderStep_ = 0;                          ///< how far a border moves in this call
   bool settled_ = false;
 };
 

@@ -12,16 +12,13 @@ constexpr std::array<std::array<Side, 2>, 4> kEdgesOfCorner{
 
 /// What is around an edge or a corner.
 struct Around {
-  bool coarser = false, finer = false, tooCoarse = false;
+  bool coarser = false, finer = false;
   float largest = 0;  ///< morph of an equal
 
   Around() = default;
   Around(const DrawnCut& cut, const FacePath& path, Side side) {
     switch (beyond(cut, path, side)) {
       case Beyond::Nothing:
-        return;
-      case Beyond::TooCoarse:
-        tooCoarse = true;
         return;
       case Beyond::Coarser:
         coarser = true;
@@ -87,33 +84,26 @@ Beyond beyond(const DrawnCut& cut, const FacePath& path, Side side) {
   if (!neighbour) return Beyond::Nothing;
   if (cut.contains(*neighbour)) return Beyond::Equal;
   if (cut.isRefined(*neighbour)) return Beyond::Finer;
-  const std::optional<FacePath> leaf = cut.leafOver(*neighbour);
-  if (!leaf) return Beyond::Nothing;
-  return leaf->level() + 1 == path.level() ? Beyond::Coarser : Beyond::TooCoarse;
+  return cut.leafOver(*neighbour) ? Beyond::Coarser : Beyond::Nothing;
 }
 
-std::uint8_t parentsEdges(const std::array<float, kSideCount>& sides) {
-  unsigned edges = 0;
-  for (unsigned edge = 0; edge < kEdgeCount; ++edge) edges |= sides[edge] == 1 ? 1u << edge : 0u;
-  return static_cast<std::uint8_t>(edges);
-}
-
-TileBorders bordersOf(const DrawnCut& cut, const FacePath& path) {
-  TileBorders borders;
-  TileMorph& morph = borders.morph;
+TileMorph morphOf(const DrawnCut& cut, const FacePath& path) {
+  TileMorph morph;
   morph.own = cut.own(path);
   std::array<Around, kSideCount> around;
   for (std::size_t side = 0; side < kSideCount; ++side) around[side] = Around(cut, path, static_cast<Side>(side));
-  for (std::size_t edge = 0; edge < kEdgeCount; ++edge) morph.sides[edge] = around[edge].value(morph.own);
+  for (std::size_t edge = 0; edge < kEdgeCount; ++edge) {
+    morph.sides[edge] = around[edge].value(morph.own);
+    // Between equals too: else a split beyond, which makes the border a coarser tile's, would turn the diagonals there.
+    if (morph.sides[edge] == 1) morph.coarserEdges = static_cast<std::uint8_t>(morph.coarserEdges | (1u << edge));
+  }
   for (std::size_t corner = kEdgeCount; corner < kSideCount; ++corner) {
     const auto [one, other] = kEdgesOfCorner[corner - kEdgeCount];
     const Around all =
         around[corner].with(around[static_cast<std::size_t>(one)]).with(around[static_cast<std::size_t>(other)]);
     morph.sides[corner] = all.value(morph.own);
   }
-  borders.meet = std::ranges::none_of(around, &Around::tooCoarse);
-  morph.coarserEdges = parentsEdges(morph.sides);
-  return borders;
+  return morph;
 }
 
 }  // namespace terrane

@@ -5,8 +5,7 @@
 // A border is drawn as the coarser of the two tiles has it: morph 1 on the finer side, 0 on the coarser. Between equals
 // it is the larger of their two values, so that both give the same; where nothing is drawn beyond, the tile's own. A
 // corner follows the same rule over all tiles around it. So tiles that share a vertex place it alike, whatever their
-// values, as long as the set is 2:1 balanced over edges and corners. Tiles more than a level apart cannot meet: towards
-// one that is too coarse a border is as if nothing were drawn beyond, and skirts must close it.
+// values, as long as the set is 2:1 balanced over edges and corners.
 
 #include <optional>
 #include <span>
@@ -43,17 +42,9 @@ class DrawnCut {
 };
 
 /// What lies beyond a side, at a tile's own level.
-enum class Beyond : std::uint8_t { Nothing, TooCoarse, Coarser, Equal, Finer };
+enum class Beyond : std::uint8_t { Nothing, Coarser, Equal, Finer };
 Beyond beyond(const DrawnCut& cut, const FacePath& path, Side side);
 
-/// TileMorph::coarserEdges of these sides.
-std::uint8_t parentsEdges(const std::array<float, kSideCount>& sides);
-
-struct TileBorders {
-  TileMorph morph;
-  bool meet = true;  ///< false: something beyond is too coarse
-};
-TileBorders bordersOf(const DrawnCut& cut, const FacePath& path);
-inline TileMorph morphOf(const DrawnCut& cut, const FacePath& path) { return bordersOf(cut, path).morph; }
+TileMorph morphOf(const DrawnCut& cut, const FacePath& path);
 
 }  // namespace terrane

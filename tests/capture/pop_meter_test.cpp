@@ -32,11 +32,12 @@ class PopTest : public GlTest, public testing::WithParamInterface<PopFlight> {
   static Pops fly(TileSource& tiles, Transition transition, int frames) {
     const Pops pops = PopMeter(tiles, GetParam(), transition, kWidth, kHeight).fly(frames);
     std::printf(
-        "%s, %s, %d frames: %d changes, RMS worst %.3f, median %.3f of 255, worst %.1f pixels per million over 8, %.1f "
-        "tiles a frame with skirts, %llu uncovered pixels\n",
+        "%s, %s, %d frames: %d changes, RMS worst %.3f, median %.3f of 255, worst %.1f pixels per million over 8, %llu "
+        "hurried, %llu jumps, %llu uncovered pixels\n",
         std::string(popFlightName(GetParam())).c_str(), std::string(transitionName(transition)).c_str(), pops.frames,
         pops.changes, pops.worstRms, pops.medianRms, pops.worstPerMillion,
-        static_cast<double>(pops.skirted) / pops.frames, static_cast<unsigned long long>(pops.uncovered));
+        static_cast<unsigned long long>(pops.hurried), static_cast<unsigned long long>(pops.jumps),
+        static_cast<unsigned long long>(pops.uncovered));
     std::fflush(stdout);
     return pops;
   }

@@ -167,6 +167,17 @@ void PopMeter::compare(const Camera& camera, const std::vector<DrawnTile>& befor
   pops_.worstPerMillion = std::max(pops_.worstPerMillion, strongPerMillion(first, second));
 }
 
+/// A few of the tiles that are missing: what is in the picture before what lies beside it, as the viewer asks.
+void PopMeter::loadLate(const Camera& camera, const TileSelection& selection) {
+  int arriving = kPopTilesPerFrame;
+  for (const auto& wanted : {selection.wanted, select(widened(camera, kShareAhead)).wanted})
+    for (const WantedTile& tile : wanted) {
+      if (isThere(tile.path)) continue;
+      if (arriving-- == 0) return;
+      load(tile.path);
+    }
+}
+
 Pops PopMeter::fly(int frames, const std::function<void(const Moment&)>& eachFrame) {
   const int firstFrame = (kPopFlightFrames - frames) / 2;
   LevelTransitions transitions({.morph = settings_.transition != Transition::None});
@@ -188,17 +199,11 @@ Pops PopMeter::fly(int frames, const std::function<void(const Moment&)>& eachFra
     pops_.uncovered +=
         renderer_->countCoverage(now.camera, now.drawn, settings_, moon_.selection().occluderRadiusMeters).uncovered;
     pops_.tiles += now.drawn.size();
-    pops_.skirted += settings_.transition == Transition::Morph
-                         ? static_cast<std::size_t>(std::ranges::count(now.drawn, true, &DrawnTile::skirts))
-                         : now.drawn.size();
     if (eachFrame) eachFrame(now);
-    int arriving = kPopTilesPerFrame;
-    for (const WantedTile& wanted : selection.wanted) {
-      if (isThere(wanted.path)) continue;
-      if (arriving-- == 0) break;
-      load(wanted.path);
-    }
+    loadLate(now.camera, selection);
   }
+  pops_.hurried = transitions.counts().hurried;
+  pops_.jumps = transitions.counts().jumps;
   pops_.frames = frames;
   pops_.medianRms = medianOf(rms_);
   return pops_;

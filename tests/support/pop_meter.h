@@ -34,10 +34,11 @@ inline constexpr int kPopTilesPerFrame = 3;
 struct Pops {
   int frames = 0;
   int changes = 0;  ///< of the drawn set, in frames in which more happened than that tiles entered or left the view
-  double worstRms = 0, medianRms = 0;  ///< of 255, over all channels
-  double worstPerMillion = 0;          ///< pixels of which a channel differs by more than 8 of 255
-  std::uint64_t uncovered = 0;         ///< pixels in all frames
-  std::size_t tiles = 0, skirted = 0;  ///< drawn in all frames, and how many of them with skirts
+  double worstRms = 0, medianRms = 0;    ///< of 255, over all channels
+  double worstPerMillion = 0;            ///< pixels of which a channel differs by more than 8 of 255
+  std::uint64_t uncovered = 0;           ///< pixels in all frames
+  std::size_t tiles = 0;                 ///< drawn in all frames
+  std::uint64_t hurried = 0, jumps = 0;  ///< changes that could not wait (TransitionCounts)
 };
 
 class PopMeter {
@@ -62,6 +63,7 @@ class PopMeter {
   bool isThere(const FacePath& path) const { return resident_.contains(path); }
   void load(const FacePath& path);
   TileSelection select(const Camera& camera) const;
+  void loadLate(const Camera& camera, const TileSelection& selection);
   void settle(const Camera& camera);
   Image picture(const Camera& camera, const std::vector<DrawnTile>& tiles);
   void compare(const Camera& camera, const std::vector<DrawnTile>& before, const std::vector<DrawnTile>& after);

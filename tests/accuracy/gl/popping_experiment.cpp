@@ -100,7 +100,7 @@ Report run(const Settings& settings, Progress& progress) {
                     {"medianRms", "median RMS difference"},
                     {"worstPerMillion", "worst: pixels per million over 8 of 255"},
                     {"tiles", "tiles a frame"},
-                    {"skirted", "of them with skirts"},
+                    {"hurried", "changes that could not wait"},
                     {"uncovered", "uncovered pixels"},
                     {"timeRatioToNone", "time of a frame / that of none"}};
   int framesDone = 0;
@@ -116,8 +116,8 @@ Report run(const Settings& settings, Progress& progress) {
       report.rows.push_back({std::string(popFlightName(flight)), std::string(transitionName(kTransitions[i])),
                              std::int64_t{pops.frames}, std::int64_t{pops.changes}, pops.worstRms, pops.medianRms,
                              pops.worstPerMillion, static_cast<double>(pops.tiles) / pops.frames,
-                             static_cast<double>(pops.skirted) / pops.frames, static_cast<std::int64_t>(pops.uncovered),
-                             timeRatio});
+                             static_cast<std::int64_t>(pops.hurried + pops.jumps),
+                             static_cast<std::int64_t>(pops.uncovered), timeRatio});
     }
   }
   report.findings = {findingOf(Transition::Morph, "Morphed", flights),
