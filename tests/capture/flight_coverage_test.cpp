@@ -32,9 +32,9 @@ class FlightCoverage : public testing::TestWithParam<const char*> {
 
   void expectNoHole(const std::string& flight, std::vector<std::string> more) {
     const std::string stats = folder_ / "stats.json";
-    more.insert(more.end(),
-                {"--server", server_.url, "--headless", "--size", "320x180", "--camera=-16.4018,21.6039,1e7",
-                 "--flight", flight, "--frames", std::to_string(frameCount()), "--stats", stats});
+    more.insert(more.end(), {"--server", server_.url, "--headless", "--size", "640x360",
+                             "--camera=-16.4018,21.6039,1e7", "--without", "detail", "--without", "dust", "--flight",
+                             flight, "--frames", std::to_string(frameCount()), "--stats", stats});
     const auto outcome = runView(more, std::chrono::seconds(240 + 2 * frameCount()));
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     const std::string json = readFile(stats);

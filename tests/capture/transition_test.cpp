@@ -27,7 +27,7 @@ class TransitionTest : public GlTest {
   void SetUp() override {
     GlTest::SetUp();
     resetConstructionCounts();
-    renderer_ = makeRenderer(shippedScene("moon").effects);
+    renderer_ = makeRenderer(moonSunlight());
     camera_ = moon().cameraAboveGround({-16.4 * kDegree, 21.6 * kDegree, 400, 0.4, -35 * kDegree}, kWidth, kHeight);
     paths_ = moon().settledTiles(camera_, 4);
     for (const FacePath& path : paths_) {
