@@ -19,21 +19,13 @@ struct Shape {
 };
 
 /// Read by texel: no mipmaps, nothing between texels.
-Texture makeTexture(GLenum internalFormat, GLenum format, GLenum type, const Shape& shape) {
+Texture makeTexture(GLenum internalFormat, GLenum format, int widthPixels, int heightPixels) {
   GLuint id = 0;
   glGenTextures(1, &id);
   Texture texture(id);
-  if (shape.samples > 1) {
-    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, id);
-    // At fixed places, as those of a renderbuffer are: GL asks that of what is mixed with one.
-    glTexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, shape.samples, internalFormat, shape.widthPixels,
-                            shape.heightPixels, GL_TRUE);
-    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, 0);
-    return texture;
-  }
   glBindTexture(GL_TEXTURE_2D, id);
-  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalFormat), shape.widthPixels, shape.heightPixels, 0, format,
-               type, nullptr);
+  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internalFormat), widthPixels, heightPixels, 0, format,
+               GL_UNSIGNED_BYTE, nullptr);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -46,8 +38,8 @@ Renderbuffer makeRenderbuffer(GLenum internalFormat, const Shape& shape) {
   GLuint id = 0;
   glGenRenderbuffers(1, &id);
   glBindRenderbuffer(GL_RENDERBUFFER, id);
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, shape.samples, internalFormat, shape.widthPixels,
-                                   shape.heightPixels);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, shape.samples > 1 ? shape.samples : 0, internalFormat,
+                                   shape.widthPixels, shape.heightPixels);
   return Renderbuffer(id);
 }
 
@@ -57,12 +49,6 @@ Framebuffer makeFramebuffer() {
   glGenFramebuffers(1, &id);
   glBindFramebuffer(GL_FRAMEBUFFER, id);
   return Framebuffer(id);
-}
-
-void bindTexture(GLenum target, const Texture& texture, int unit) {
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(target, texture.id());
-  glActiveTexture(GL_TEXTURE0);
 }
 
 }  // namespace
@@ -94,8 +80,8 @@ Result<bool> RenderTarget::attach(TargetFormat format) {
   const bool red = format == TargetFormat::R8;
   const GLenum colorFormat = red ? GL_R8 : GL_RGBA8;
   const Shape shape{widthPixels_, heightPixels_, samples_};
-  color_ = makeTexture(colorFormat, red ? GL_RED : GL_RGBA, GL_UNSIGNED_BYTE, {widthPixels_, heightPixels_, 1});
-  depth_ = makeTexture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, shape);
+  color_ = makeTexture(colorFormat, red ? GL_RED : GL_RGBA, widthPixels_, heightPixels_);
+  depth_ = makeRenderbuffer(GL_DEPTH_COMPONENT32F, shape);
   if (samples_ > 1) sampledColor_ = makeRenderbuffer(colorFormat, shape);
 
   GLenum status = GL_FRAMEBUFFER_COMPLETE;
@@ -105,12 +91,11 @@ Result<bool> RenderTarget::attach(TargetFormat format) {
       glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, sampledColor_.id());
     else
       glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, color_.id(), 0);
-    if (depth) glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth_.id(), 0);
+    if (depth) glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.id());
     const GLenum found = glCheckFramebufferStatus(GL_FRAMEBUFFER);
     if (status == GL_FRAMEBUFFER_COMPLETE) status = found;
   };
   if (samples_ > 1) finish(resolved_, false, false);
-  finish(colorOnly_, samples_ > 1, false);
   finish(framebuffer_, samples_ > 1, true);
   if (status != GL_FRAMEBUFFER_COMPLETE) {
     return makeError(ErrorKind::Unsupported, "framebuffer",
@@ -126,11 +111,6 @@ void RenderTarget::bind() const {
   glViewport(0, 0, widthPixels_, heightPixels_);
 }
 
-void RenderTarget::bindColorOnly() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, colorOnly_.id());
-  glViewport(0, 0, widthPixels_, heightPixels_);
-}
-
 void RenderTarget::bindForReading() const {
   if (resolved_) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
@@ -142,11 +122,11 @@ void RenderTarget::bindForReading() const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, readable());
 }
 
-void RenderTarget::bindDepthTexture(int unit) const {
-  bindTexture(samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D, depth_, unit);
+void RenderTarget::bindColorTexture(int unit) const {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, color_.id());
+  glActiveTexture(GL_TEXTURE0);
 }
-
-void RenderTarget::bindColorTexture(int unit) const { bindTexture(GL_TEXTURE_2D, color_, unit); }
 
 void RenderTarget::bindWindow() { glBindFramebuffer(GL_FRAMEBUFFER, 0); }
 

@@ -1,7 +1,6 @@
 #pragma once
 // An offscreen framebuffer of exact size: colour of 8 bits a channel and a 32-bit float depth buffer, without which
-// reversed depth would be worth nothing (a window's own depth buffer has 24 fixed bits). Depth is a texture, so that a
-// later pass can read how far away the scene is. GL thread only.
+// reversed depth would be worth nothing (a window's own depth buffer has 24 fixed bits). GL thread only.
 
 #include <cstdint>
 #include <vector>
@@ -30,13 +29,8 @@ class RenderTarget {
 
   /// For drawing, and for reading where there is one sample; sets the viewport.
   void bind() const;
-  /// The same colour without the depth buffer: for a pass that reads depth while it blends into the colour.
-  void bindColorOnly() const;
   /// For reading (readFramebuffer): brings every pixel's samples together first. Drawing goes where bind sends it.
   void bindForReading() const;
-  /// Depth, near / w, as a texture: sampler2D, or sampler2DMS where there are several samples. To be fetched by texel,
-  /// in passes bound by bindColorOnly or to another target.
-  void bindDepthTexture(int unit) const;
   /// Colour as a sampler2D, as of the last bindForReading or blitToWindow where there are several samples.
   void bindColorTexture(int unit) const;
 
@@ -53,9 +47,9 @@ class RenderTarget {
   unsigned readable() const noexcept { return resolved_ ? resolved_.id() : framebuffer_.id(); }
 
   int widthPixels_ = 0, heightPixels_ = 0, samples_ = 1, samplesAsked_ = 1;
-  gl::Handle<gl::ObjectKind::Texture> color_, depth_;
-  gl::Handle<gl::ObjectKind::Renderbuffer> sampledColor_;  ///< only with several samples
-  gl::Handle<gl::ObjectKind::Framebuffer> framebuffer_, colorOnly_, resolved_;
+  gl::Handle<gl::ObjectKind::Texture> color_;
+  gl::Handle<gl::ObjectKind::Renderbuffer> depth_, sampledColor_;  ///< the second only with several samples
+  gl::Handle<gl::ObjectKind::Framebuffer> framebuffer_, resolved_;
 };
 
 }  // namespace terrane

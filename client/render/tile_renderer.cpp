@@ -17,6 +17,7 @@
 #include "client/render/gpu_self_test.h"
 #include "client/render/gpu_tiles.h"
 #include "client/render/level_blend.h"
+#include "client/render/tile_pass.h"
 #include "client/render/tile_program.h"
 
 namespace terrane {
@@ -37,44 +38,6 @@ glm::vec3 levelTint(int level) {
   };
   return {channel(5.0f), channel(3.0f), channel(1.0f)};
 }
-
-/// The state of a pass over tiles, and GL's defaults again afterwards (the HUD relies on them).
-class TilePass {
- public:
-  enum class Start : std::uint8_t { Cleared, Kept };  ///< what is in the framebuffer
-  TilePass(const gl::Capabilities& capabilities, bool wireframe, Start start = Start::Cleared)
-      : clipControl_(capabilities.clipControl) {
-    if (clipControl_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glDisable(GL_BLEND);
-    glDisable(GL_SCISSOR_TEST);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glDepthMask(GL_TRUE);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_BACK);
-    glFrontFace(GL_CCW);
-    glPolygonMode(GL_FRONT_AND_BACK, wireframe ? GL_LINE : GL_FILL);
-    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
-    glClearDepth(0.0);
-    if (start == Start::Cleared) glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  }
-  TilePass(const TilePass&) = delete;
-  TilePass& operator=(const TilePass&) = delete;
-  ~TilePass() {
-    if (clipControl_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glClearDepth(1.0);
-    gl::VertexArray::unbind();
-    glUseProgram(0);
-  }
-
- private:
-  bool clipControl_;
-};
 
 /// Of the array that is bound. Returns the number of triangles.
 std::size_t drawList(const IndexList& list) {

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "client/app/option_values.h"
 #include "client/app/view_options.h"
 #include "client/app/view_session.h"
 #include "tests/support/view_processes.h"
