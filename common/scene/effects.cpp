@@ -19,10 +19,11 @@ constexpr std::array kSunParameters{
 };
 
 constexpr std::array kDetailParameters{
-    ParameterSpec{"relief", Quantity::Number, 0, 1, 0.14, "slope of the relief of a metre's wavelength"},
-    ParameterSpec{"hurst", Quantity::Number, 0, 1, 0.9,
-                  "how slopes fall with the wavelength, as its power of hurst - 1"},
-    ParameterSpec{"mottle", Quantity::Number, 0, 1, 0.05, "how much reflectance varies, as a share, in each octave"},
+    ParameterSpec{"relief", Quantity::Number, 0, 1, 0.12, "slope of the relief in each octave up to a metre"},
+    ParameterSpec{"mottle", Quantity::Number, 0, 1, 0.04,
+                  "how much reflectance varies, as a share, in each octave up to a metre"},
+    ParameterSpec{"hurst", Quantity::Number, 0, 1, 0.7,
+                  "how both fall with longer waves, as their length's power of hurst - 1"},
 };
 
 constexpr std::array kDustParameters{
