@@ -13,7 +13,10 @@ class SlowedHttpLinks::Link final : public HttpLink, public std::enable_shared_f
   void get(const std::string& target, std::function<void(HttpAnswer)> done) override {
     done_ = std::move(done);
     made_ = Clock::now();
-    wire_->get(target, [self = shared_from_this()](HttpAnswer answer) {
+    // Not owning: the wire keeps this while it is closed too, and is owned by the link.
+    wire_->get(target, [link = weak_from_this()](HttpAnswer answer) {
+      const auto self = link.lock();
+      if (!self) return;
       self->held_ = std::move(answer);
       self->owner_.hold(self, self->made_, self->held_->bytes);
     });

@@ -134,5 +134,15 @@ TEST(Camera, FieldOfViewEndsAtTheEdgeOfThePicture) {
   EXPECT_NEAR(pixelsPerRadian(camera) * top, 360.0, 1e-10);
 }
 
+TEST(Camera, WidenedItSeesFurtherOnEverySideWithPixelsAsLargeAsBefore) {
+  const Camera camera = cameraFromPose({0.3, -0.4, 1e5, 1, -0.5}, 1737400, 0.9, 1281, 719);
+  const Camera wide = widened(camera, 0.25);
+  EXPECT_NEAR(pixelsPerRadian(wide) / pixelsPerRadian(camera), 1, 1e-14);
+  EXPECT_EQ(wide.widthPixels, 1281 + 2 * 321);
+  EXPECT_EQ(wide.heightPixels, 719 + 2 * 180);
+  EXPECT_EQ(wide.positionBody, camera.positionBody);
+  EXPECT_EQ(wide.backward, camera.backward);
+}
+
 }  // namespace
 }  // namespace terrane
