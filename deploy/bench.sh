@@ -37,7 +37,7 @@ report=$work/report.md
   echo
   echo "**What a seamless, real ground costs**, at 1280×720 on software OpenGL: every tile half way between two levels, the effects detail and dust; each left out, and several samples a pixel put in:"
   echo
-  "$bin/bench_effects" --frames "$($quick && echo 5 || echo 30)"
+  "$bin/bench_effects" --frames "$($quick && echo 5 || echo 15)"
 } | tee "$report"
 
 "$bin/terrane-accuracy" $($quick && echo --quick) --only summary --out "$work/accuracy" >&2

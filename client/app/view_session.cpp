@@ -259,9 +259,13 @@ bool ViewSession::State::chooseTiles(const Camera& from, double allowedPixels, d
   settings.errorPixels = allowedPixels;
   selection = selectTiles(
       from, stream->body()->selection, [this](const FacePath& path) { return stream->known(path); }, settings);
-  std::vector<DrawnTile> next = transitions.advance(selection.draw, seconds, [this](const FacePath& path) {
-    return path.level() > 0 && stream->resident(path) != nullptr && stream->resident(path.parent()) != nullptr;
-  });
+  const auto known = [this](const FacePath& path) { return stream->known(path); };
+  std::vector<DrawnTile> next = transitions.advance(
+      selection.draw, seconds,
+      [this](const FacePath& path) {
+        return path.level() > 0 && stream->resident(path) != nullptr && stream->resident(path.parent()) != nullptr;
+      },
+      [&](const FacePath& path) { return tileMayBeSeen(path, from, stream->body()->selection, known); });
   const bool changed = next != drawn;
   drawn = std::move(next);
   return changed || !transitions.settled();

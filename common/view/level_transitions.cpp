@@ -63,12 +63,12 @@ void forEachNeighbour(const FacePath& path, const Function& function) {
 }  // namespace
 
 std::vector<DrawnTile> LevelTransitions::advance(std::span<const FacePath> wantedTiles, double seconds,
-                                                 const std::function<bool(const FacePath&)>& canMorph) {
+                                                 const Question& canMorph, const Question& mayBeSeen) {
   const Wanted wanted(wantedTiles);
   if (!settings_.morph) {
     settleAtOnce(wanted);
   } else {
-    leaveAndEnter(wanted);
+    leaveAndEnter(wanted, canMorph, mayBeSeen);
     split(wanted, canMorph);
     merge(wanted);
     fade(wanted, seconds, canMorph);
@@ -93,17 +93,39 @@ void LevelTransitions::jump(const Wanted& wanted) {
   ++counts_.jumps;
 }
 
-void LevelTransitions::leaveAndEnter(const Wanted& wanted) {
+void LevelTransitions::leaveAndEnter(const Wanted& wanted, const Question& canMorph, const Question& mayBeSeen) {
   for (const FacePath& path : cut_.tiles()) {
     if (wanted.overlaps(path)) continue;
     cut_.erase(path);
     ++counts_.left;
   }
   for (const FacePath& path : wanted.tiles()) {
-    if (cut_.isRefined(path) || cut_.leafOver(path)) continue;
-    enter(path);
-    ++counts_.entered;
+    if (cut_.leafOver(path)) continue;
+    if (!cut_.isRefined(path)) {
+      enter(path);
+      ++counts_.entered;
+    } else if (!fillGaps(path, canMorph, mayBeSeen)) {
+      mergeAtOnce(path);
+      ++counts_.hurried;
+    }
   }
+}
+
+/// A tile that is wanted whole is drawn by some of its descendants, the others having been out of view: those that now
+/// may be seen come in. False if one of them is not there.
+bool LevelTransitions::fillGaps(const FacePath& above, const Question& canMorph, const Question& mayBeSeen) {
+  for (int digit = 0; digit < 4; ++digit) {
+    const FacePath child = above.child(digit);
+    if (cut_.contains(child)) continue;
+    if (cut_.isRefined(child)) {
+      if (!fillGaps(child, canMorph, mayBeSeen)) return false;
+    } else if (mayBeSeen(child)) {
+      if (!canMorph(child)) return false;
+      cut_.insert(child, 0);
+      ++counts_.entered;
+    }
+  }
+  return true;
 }
 
 /// A tile comes in as it is wanted, or coarser where what is drawn beside it is not that far yet.
@@ -128,7 +150,7 @@ std::optional<FacePath> LevelTransitions::coarserBeside(const FacePath& path) co
 
 /// Tiles have come in beside others that are not yet as they are to be, and are now too fine or too coarse for them:
 /// those change at once. That is at the rim of the view, where tiles come in.
-void LevelTransitions::hurry(const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph) {
+void LevelTransitions::hurry(const Wanted& wanted, const Question& canMorph) {
   for (bool again = true; again;) {
     again = false;
     for (const FacePath& path : cut_.tiles()) {
@@ -154,8 +176,7 @@ void LevelTransitions::mergeAtOnce(const FacePath& parent) {
   cut_.insert(parent, 0);
 }
 
-void LevelTransitions::splitAtOnce(const FacePath& path, const Wanted& wanted,
-                                   const std::function<bool(const FacePath&)>& canMorph) {
+void LevelTransitions::splitAtOnce(const FacePath& path, const Wanted& wanted, const Question& canMorph) {
   cut_.erase(path);
   for (int digit = 0; digit < 4; ++digit) {
     const FacePath child = path.child(digit);
@@ -163,7 +184,7 @@ void LevelTransitions::splitAtOnce(const FacePath& path, const Wanted& wanted,
   }
 }
 
-void LevelTransitions::split(const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph) {
+void LevelTransitions::split(const Wanted& wanted, const Question& canMorph) {
   // Decided before any is carried out: a split changes nothing for the others, whose sides towards it are 0 already.
   std::vector<FacePath> ready;
   for (const FacePath& path : cut_.tiles()) {
@@ -215,8 +236,7 @@ void LevelTransitions::merge(const Wanted& wanted) {
   }
 }
 
-void LevelTransitions::fade(const Wanted& wanted, double seconds,
-                            const std::function<bool(const FacePath&)>& canMorph) {
+void LevelTransitions::fade(const Wanted& wanted, double seconds, const Question& canMorph) {
   for (const FacePath& path : cut_.tiles()) {
     const bool merging = path.level() > 0 && wanted.coarserLevel(path) >= 0 && mayMerge(path.parent());
     const float goal = merging ? 1.0f : 0.0f, now = cut_.own(path);

@@ -38,10 +38,12 @@ class LevelTransitions {
  public:
   explicit LevelTransitions(TransitionSettings settings = {}) : settings_(settings) {}
 
+  using Question = std::function<bool(const FacePath&)>;
   /// A frame: wanted is 2:1 balanced, disjoint and drawable (TileSelection::draw); seconds since the frame before, 0
-  /// for the first. canMorph: the tile's mesh and its parent's are there.
-  std::vector<DrawnTile> advance(std::span<const FacePath> wanted, double seconds,
-                                 const std::function<bool(const FacePath&)>& canMorph);
+  /// for the first. canMorph: the tile's mesh and its parent's are there. mayBeSeen: the tile may be in view; asked for
+  /// parts of a wanted tile that are not drawn yet, while others are in its children.
+  std::vector<DrawnTile> advance(std::span<const FacePath> wanted, double seconds, const Question& canMorph,
+                                 const Question& mayBeSeen);
 
   /// What is drawn is what was wanted, each as its own surface: the next call changes nothing.
   bool settled() const noexcept { return settled_; }
@@ -49,15 +51,16 @@ class LevelTransitions {
 
  private:
   class Wanted;
-  void leaveAndEnter(const Wanted& wanted);
+  void leaveAndEnter(const Wanted& wanted, const Question& canMorph, const Question& mayBeSeen);
+  bool fillGaps(const FacePath& above, const Question& canMorph, const Question& mayBeSeen);
   void enter(const FacePath& path);
   std::optional<FacePath> coarserBeside(const FacePath& path) const;
-  void hurry(const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph);
-  void split(const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph);
-  void splitAtOnce(const FacePath& path, const Wanted& wanted, const std::function<bool(const FacePath&)>& canMorph);
+  void hurry(const Wanted& wanted, const Question& canMorph);
+  void split(const Wanted& wanted, const Question& canMorph);
+  void splitAtOnce(const FacePath& path, const Wanted& wanted, const Question& canMorph);
   void merge(const Wanted& wanted);
   void mergeAtOnce(const FacePath& parent);
-  void fade(const Wanted& wanted, double seconds, const std::function<bool(const FacePath&)>& canMorph);
+  void fade(const Wanted& wanted, double seconds, const Question& canMorph);
   bool mayMerge(const FacePath& parent) const;
   bool isReadyToMerge(const FacePath& parent) const;
   void jump(const Wanted& wanted);

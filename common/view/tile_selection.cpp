@@ -319,4 +319,19 @@ TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const
   return Selector(camera, body, resident, settings).run();
 }
 
+bool tileMayBeSeen(const FacePath& path, const Camera& camera, const SelectionBody& body,
+                   const ResidentLookup& resident) {
+  HeightRange heights = body.heights;
+  for (int level = path.level(); level >= 0; --level) {
+    const ResidentTile* tile = resident(path.ancestor(level));
+    if (tile == nullptr) continue;
+    heights = level == path.level() && tile->ownHeights ? *tile->ownHeights : tile->subtreeHeights;
+    break;
+  }
+  const TileBounds bounds = tileBounds(path, body.radiusMeters, heights, body.occluderRadiusMeters);
+  return Frustum(camera).mayContain(bounds.hull) &&
+         !Horizon(camera.positionBody, body.radiusMeters, camera.altitudeMeters, body.occluderRadiusMeters)
+              .hides(bounds.horizonPoint);
+}
+
 }  // namespace terrane

@@ -68,6 +68,10 @@ struct TileSelection {
   bool rootsMissing = false;       ///< some visible face has no resident tile at all: nothing can be drawn there yet
 };
 
+/// Whether selection would think that the tile may be in view, by what is known of it or of the nearest tile above it.
+bool tileMayBeSeen(const FacePath& path, const Camera& camera, const SelectionBody& body,
+                   const ResidentLookup& resident);
+
 /// From a camera that is nowhere (a position or field of view that is not finite): nothing, and not complete.
 TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const ResidentLookup& resident,
                           const SelectionSettings& settings);

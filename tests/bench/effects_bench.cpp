@@ -124,7 +124,7 @@ class ViewBench {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int frames = 30;
+  int frames = 15;
   for (int i = 1; i + 1 < argc; ++i)
     if (std::string_view(argv[i]) == "--frames") frames = std::max(3, std::atoi(argv[i + 1]));
   keepFreedMemory(kHeapKeptByViewer);

@@ -128,12 +128,15 @@ void PopMeter::load(const FacePath& path) {
   resident_.emplace(path, residentTile(*tile, moon_.selection().radiusMeters));
 }
 
-TileSelection PopMeter::select(const Camera& camera) const {
-  const ResidentLookup lookup = [this](const FacePath& path) -> const ResidentTile* {
+ResidentLookup PopMeter::lookup() const {
+  return [this](const FacePath& path) -> const ResidentTile* {
     const auto found = resident_.find(path);
     return found == resident_.end() ? nullptr : &found->second;
   };
-  return selectTiles(camera, moon_.selection(), lookup, {.errorPixels = kErrorPixels});
+}
+
+TileSelection PopMeter::select(const Camera& camera) const {
+  return selectTiles(camera, moon_.selection(), lookup(), {.errorPixels = kErrorPixels});
 }
 
 void PopMeter::settle(const Camera& camera) {
@@ -192,10 +195,13 @@ Pops PopMeter::fly(int frames, const std::function<void(const Moment&)>& eachFra
     now.camera = cameraAt(firstFrame + frame);
     const TileSelection selection = select(now.camera);
     now.wanted = selection.draw;
+    const auto mayBeSeen = [&](const FacePath& path) {
+      return tileMayBeSeen(path, now.camera, moon_.selection(), lookup());
+    };
     // All changes of the set happen in no time; then the morphs go on.
-    const std::vector<DrawnTile> changed = transitions.advance(selection.draw, 0, canMorph);
+    const std::vector<DrawnTile> changed = transitions.advance(selection.draw, 0, canMorph, mayBeSeen);
     if (frame > 0 && changed != now.drawn) compare(now.camera, now.drawn, changed);
-    now.drawn = transitions.advance(selection.draw, kPopFrameSeconds, canMorph);
+    now.drawn = transitions.advance(selection.draw, kPopFrameSeconds, canMorph, mayBeSeen);
     pops_.uncovered +=
         renderer_->countCoverage(now.camera, now.drawn, settings_, moon_.selection().occluderRadiusMeters).uncovered;
     pops_.tiles += now.drawn.size();

@@ -62,6 +62,7 @@ class PopMeter {
   Camera cameraAt(int frame) const;
   bool isThere(const FacePath& path) const { return resident_.contains(path); }
   void load(const FacePath& path);
+  ResidentLookup lookup() const;
   TileSelection select(const Camera& camera) const;
   void loadLate(const Camera& camera, const TileSelection& selection);
   void settle(const Camera& camera);

@@ -123,9 +123,10 @@ void SwimRun::advance() {
   };
   for (const FacePath& path : selection.draw)
     for (int level = 0; level <= path.level(); ++level) load(path.ancestor(level));
-  drawn_ = transitions_.advance(selection.draw, 1.0 / 30, [&](const FacePath& path) {
-    return path.level() > 0 && there_.contains(path) && there_.contains(path.parent());
-  });
+  drawn_ = transitions_.advance(
+      selection.draw, 1.0 / 30,
+      [&](const FacePath& path) { return path.level() > 0 && there_.contains(path) && there_.contains(path.parent()); },
+      [](const FacePath&) { return true; });
 }
 
 void SwimRun::draw() {

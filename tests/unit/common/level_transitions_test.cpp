@@ -11,6 +11,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <set>
 #include <unordered_map>
 
 #include "common/tiling/cube_sphere.h"
@@ -156,12 +157,13 @@ FlightResult fly(ViewPose (*pose)(double), int frames, int tilesPerFrame, bool m
     const double t = std::min(1.0, frame / static_cast<double>(frames));
     const Camera camera = cameraFromPose(pose(t), kMoon, 0.9, 640, 360);
     const TileSelection selection = selectTiles(camera, body, tiles.lookup(), {});
+    const auto mayBeSeen = [&](const FacePath& path) { return tileMayBeSeen(path, camera, body, tiles.lookup()); };
     // Changes of the set alone: no time passes.
-    const std::vector<DrawnTile> changed = transitions.advance(selection.draw, 0, canMorph);
+    const std::vector<DrawnTile> changed = transitions.advance(selection.draw, 0, canMorph, mayBeSeen);
     const std::size_t jumped = moved(camera, drawn, changed);
     result.moved += jumped;
     result.movedFrames += jumped > 0 ? 1u : 0u;
-    drawn = transitions.advance(selection.draw, 1.0 / 30, canMorph);
+    drawn = transitions.advance(selection.draw, 1.0 / 30, canMorph, mayBeSeen);
     result.disagreements += disagreements(changed) + disagreements(drawn);
     tiles.load(selection.wanted, tilesPerFrame);
     if (frame >= frames && selection.complete && transitions.settled()) {
@@ -195,6 +197,23 @@ TEST_P(LevelTransitionsFlight, IsClosedAndMovesNoVertexWhenTheDrawnSetChanges) {
   EXPECT_GT(result.counts.splits, 20u);
   EXPECT_GT(control.moved, result.moved);
   EXPECT_EQ(control.disagreements, 0u);
+}
+
+TEST(LevelTransitions, WhatComesIntoViewOfATileThatItsChildrenStillDrawIsDrawnAtOnce) {
+  const FacePath tile = FacePath::wholeFace(Scheme::Cube, 2).child(1).child(3);
+  const std::vector<FacePath> two{tile.child(0), tile.child(1)}, whole{tile};
+  const auto never = [](const FacePath&) { return false; };
+  const auto always = [](const FacePath&) { return true; };
+  const auto drawnAfter = [&](const LevelTransitions::Question& canMorph, const LevelTransitions::Question& mayBeSeen) {
+    LevelTransitions transitions;
+    transitions.advance(two, 0, always, never);
+    std::set<FacePath> paths;
+    for (const DrawnTile& drawn : transitions.advance(whole, 0, canMorph, mayBeSeen)) paths.insert(drawn.path);
+    return paths;
+  };
+  EXPECT_EQ(drawnAfter(always, always), (std::set{tile.child(0), tile.child(1), tile.child(2), tile.child(3)}));
+  EXPECT_EQ(drawnAfter(never, always), std::set{tile}) << "children that are not there: the tile itself, at once";
+  EXPECT_EQ(drawnAfter(always, never), (std::set{tile.child(0), tile.child(1)})) << "nobody sees the others";
 }
 
 INSTANTIATE_TEST_SUITE_P(Flights, LevelTransitionsFlight,
