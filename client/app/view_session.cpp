@@ -234,7 +234,7 @@ bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst, bo
   wantedCount = wanted.size();
   missing = static_cast<std::size_t>(std::count_if(
       wanted.begin(), wanted.end(), [&](const WantedTile& tile) { return stream->resident(tile.path) == nullptr; }));
-  if (ahead) addBesidePicture(allowedPixels, known, wanted);
+  if (ahead && (groundKnown || !groundFirst)) addBesidePicture(allowedPixels, known, wanted);
   stream->want(wanted);
   return groundKnown;
 }
@@ -245,8 +245,10 @@ void ViewSession::State::addBesidePicture(double allowedPixels, std::unordered_s
   const TileSelection wide = selectTiles(
       widened(camera, kShareAhead), stream->body()->selection,
       [this](const FacePath& path) { return stream->known(path); }, settings);
-  for (const WantedTile& tile : wide.wanted)
+  for (WantedTile tile : wide.wanted) {
+    tile.beside = true;
     if (known.insert(tile.path).second) wanted.push_back(tile);
+  }
 }
 
 void ViewSession::State::changeLevelsOverTime(bool wanted) {
@@ -257,9 +259,8 @@ void ViewSession::State::changeLevelsOverTime(bool wanted) {
 bool ViewSession::State::chooseTiles(const Camera& from, double allowedPixels, double seconds) {
   SelectionSettings settings;
   settings.errorPixels = allowedPixels;
-  selection = selectTiles(
-      from, stream->body()->selection, [this](const FacePath& path) { return stream->known(path); }, settings);
   const auto known = [this](const FacePath& path) { return stream->known(path); };
+  selection = selectTiles(from, stream->body()->selection, known, settings);
   std::vector<DrawnTile> next = transitions.advance(
       selection.draw, seconds,
       [this](const FacePath& path) {

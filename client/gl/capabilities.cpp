@@ -57,10 +57,9 @@ Capabilities detectCapabilities(bool forceBaseline) {
 }
 
 int maxSamples() {
-  GLint color = 0, depth = 0;
-  glGetIntegerv(GL_MAX_SAMPLES, &color);
-  glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &depth);
-  return std::max(1, std::min(color, depth));
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_SAMPLES, &most);
+  return std::max(1, most);
 }
 
 int boundSamples() {

@@ -14,7 +14,7 @@ struct Capabilities {
   bool preciseByExtension = false;
   std::size_t bufferWords = 65536;  ///< that a shader can read of a buffer
   bool rendersOnCpu = false;        ///< software GL: what it holds back of a frame is the program's own memory
-  int maxSamples = 1;               ///< a pixel, that colour and a depth texture can both have
+  int maxSamples = 1;               ///< a pixel, of a render target
   std::string renderer, versionText;
 };
 

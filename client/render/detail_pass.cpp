@@ -60,7 +60,7 @@ class DetailPass final : public EffectPass {
 
 Result<std::unique_ptr<EffectPass>> makeDetailPass(const DetailStrength& strength, const PassContext& context) {
   gl::ProgramSpec spec;
-  spec.vertexFile = "screen.vert.glsl";
+  spec.vertexFile = "whole_picture.vert.glsl";
   spec.fragmentFile = "detail.frag.glsl";
   spec.defines = definesOf(context.effects);
   spec.defines.push_back(fmt::format("OCTAVE_COUNT {}", kDetailOctaves));

@@ -21,11 +21,13 @@ using std::chrono::milliseconds;
 
 /// Behind everything that is wanted.
 constexpr double kUnwanted = 1000.0;
+/// Behind everything in the picture.
+constexpr double kBeside = 100.0;
 
-/// Level by level, within a level the larger error first: level < value <= level + 1.
+/// What is in the picture first; level by level; within a level the larger error first.
 double fetchPriority(const WantedTile& wanted) {
   const double error = std::isfinite(wanted.screenErrorPixels) ? std::max(0.0, wanted.screenErrorPixels) : 1e9;
-  return wanted.path.level() + 1.0 / (1.0 + error);
+  return wanted.path.level() + 1.0 / (1.0 + error) + (wanted.beside ? kBeside : 0.0);
 }
 
 /// A tile that is wanted, or was just now, and is not resident in the revision in force. (Residency and the request are

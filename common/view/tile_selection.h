@@ -58,7 +58,8 @@ struct SelectionSettings {
 struct WantedTile {
   FacePath path;
   double screenErrorPixels = 0;
-  bool leaf = false;  ///< to be drawn once all is there; otherwise an ancestor
+  bool leaf = false;    ///< to be drawn once all is there; otherwise an ancestor
+  bool beside = false;  ///< beside the picture: after all that is in it. Selection itself asks for no such tile
 };
 
 struct TileSelection {

@@ -242,7 +242,7 @@ Result<Swim> measureSwim(TileSource& moon, const SwimSettings& settings) {
   auto renderer = TileRenderer::create({});
   if (!renderer) return renderer.error();
   gl::ProgramSpec spec;
-  spec.vertexFile = "screen.vert.glsl";
+  spec.vertexFile = "whole_picture.vert.glsl";
   spec.fragmentText = kShowCoordinate;
   spec.defines.push_back(fmt::format("OCTAVE_COUNT {}", kDetailOctaves));
   if (settings.coordinates == TextureCoordinates::Float32) spec.defines.emplace_back("FLOAT32");

@@ -68,6 +68,23 @@ TEST(TileStream, AncestorsAndLeavesAreAskedForAtOnceCoarsestFirstThenLargestErro
                           target(path("cube/0/1")), target(path("cube/0/13")), target(path("cube/0/12"))));
 }
 
+TEST(TileStream, WhatLiesBesideThePictureIsAskedForAfterAllThatIsInIt) {
+  RunningWorld world(holding("/cube/0.glb"));
+  StreamOptions options = quickOptions(world.url());
+  options.connections = 1;
+  SmallViewer viewer(options);
+  ASSERT_TRUE(viewer.waitForScene());
+  viewer.frame({{path("cube/0"), 100, false},
+                {path("cube/1"), 100, true, true},
+                {path("cube/0/1"), 10, false},
+                {path("cube/0/12"), 1, true}});
+  ASSERT_TRUE(world.server().waitForHolding(1));
+  world.server().releaseAll();
+  ASSERT_TRUE(world.server().waitForRequests(5));
+  EXPECT_THAT(world.server().targets(), ElementsAre("/v1/scene.json", target(path("cube/0")), target(path("cube/0/1")),
+                                                    target(path("cube/0/12")), target(path("cube/1"))));
+}
+
 TEST(TileStream, HandsOverWithinTheBudgetCoarsestFirst) {
   RunningWorld world;
   SmallViewer viewer(quickOptions(world.url()));
