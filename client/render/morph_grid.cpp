@@ -24,10 +24,4 @@ std::optional<MorphGrid> morphGrid(const TileMetadata& tile, const TileMetadata&
   return grid;
 }
 
-std::array<float, 9> morphByPlace(const TileMorph& morph) noexcept {
-  const auto of = [&](Side side) { return morph.sides[static_cast<std::size_t>(side)]; };
-  return {of(Side::UMinVMin), of(Side::VMin),     of(Side::UMaxVMin), of(Side::UMin),    morph.own,
-          of(Side::UMax),     of(Side::UMinVMax), of(Side::VMax),     of(Side::UMaxVMax)};
-}
-
 }  // namespace terrane

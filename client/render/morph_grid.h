@@ -35,12 +35,4 @@ struct MorphGrid {
 /// Precondition: tile.path is a child of parent.path.
 std::optional<MorphGrid> morphGrid(const TileMetadata& tile, const TileMetadata& parent) noexcept;
 
-/// A tile's morph values by place: rows VMin, between, VMax of columns UMin, between, UMax.
-std::array<float, 9> morphByPlace(const TileMorph& morph) noexcept;
-/// Of vertex (i, j) of a grid with so many vertices in a row.
-inline float morphAt(const std::array<float, 9>& byPlace, int side, int i, int j) noexcept {
-  const auto place = [side](int at) { return at == 0 ? 0u : at == side - 1 ? 2u : 1u; };
-  return byPlace[3 * place(j) + place(i)];
-}
-
 }  // namespace terrane

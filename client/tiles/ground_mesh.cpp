@@ -14,17 +14,6 @@ constexpr double kEdgeTolerance = 0.05;
 
 double cross2(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
 
-/// Of vertex (i, j) of a grid whose last row and column are number `last`.
-double morphAt(const TileMorph& morph, int last, int i, int j) {
-  const auto of = [&](Side side) { return static_cast<double>(morph.sides[static_cast<std::size_t>(side)]); };
-  const bool uMin = i == 0, uMax = i == last, vMin = j == 0, vMax = j == last;
-  if (vMin && (uMin || uMax)) return of(uMin ? Side::UMinVMin : Side::UMaxVMin);
-  if (vMax && (uMin || uMax)) return of(uMin ? Side::UMinVMax : Side::UMaxVMax);
-  if (uMin || uMax) return of(uMin ? Side::UMin : Side::UMax);
-  if (vMin || vMax) return of(vMin ? Side::VMin : Side::VMax);
-  return static_cast<double>(morph.own);
-}
-
 }  // namespace
 
 /// Positions are taken relative to a point of the ray near the surface, so that millimetres do not drown in the radius.
@@ -36,7 +25,7 @@ struct GroundMesh::Ray {
 
   // Only for a tile that is drawn on its way to its parent.
   const GroundMesh* parent = nullptr;
-  const TileMorph* morph = nullptr;
+  std::array<float, 9> byPlace{};
   int firstColumn = 0, firstRow = 0;  ///< of the parent's grid, where the tile's vertex (0, 0) lies
   glm::dvec3 parentOriginFromAnchor;
 };
@@ -103,7 +92,8 @@ glm::dvec3 GroundMesh::vertex(const Ray& ray, int i, int j) const {
   // Twice the parent's step times the mean of two offsets is the step times their sum.
   const int column = (i >> 1) + ray.firstColumn, row = (j >> 1) + ray.firstRow;
   const glm::dvec3 twice = ray.parent->offset(column, row) + ray.parent->offset(column + (i & 1), row + (j & 1));
-  return own + morphAt(*ray.morph, cells_, i, j) * (ray.parentOriginFromAnchor + ray.step * twice - own);
+  return own + static_cast<double>(morphAt(ray.byPlace, cells_ + 1, i, j)) *
+                   (ray.parentOriginFromAnchor + ray.step * twice - own);
 }
 
 GroundMesh::Hit GroundMesh::meetCell(const Ray& ray, int i, int j) const {
@@ -162,7 +152,7 @@ std::optional<double> GroundMesh::morphedHeightMeters(const glm::dvec3& directio
   Ray ray = rayAlong(direction);
   if (parent.cells_ == cells_ && cells_ % 2 == 0 && parent.stepExponent_ == stepExponent_ + 1) {
     ray.parent = &parent;
-    ray.morph = &morph;
+    ray.byPlace = morphByPlace(morph);
     ray.firstColumn = (childDigit & 1) != 0 ? cells_ / 2 : 0;
     ray.firstRow = (childDigit & 2) != 0 ? cells_ / 2 : 0;
     ray.parentOriginFromAnchor = latticePosition(parent.origin_, parent.stepExponent_) - ray.anchorMeters * direction;

@@ -21,6 +21,18 @@ struct TileMorph {
   bool operator==(const TileMorph&) const = default;
 };
 
+/// A tile's morph values by place: rows VMin, between, VMax of columns UMin, between, UMax.
+inline std::array<float, 9> morphByPlace(const TileMorph& morph) noexcept {
+  const auto of = [&](Side side) { return morph.sides[static_cast<std::size_t>(side)]; };
+  return {of(Side::UMinVMin), of(Side::VMin),     of(Side::UMaxVMin), of(Side::UMin),    morph.own,
+          of(Side::UMax),     of(Side::UMinVMax), of(Side::VMax),     of(Side::UMaxVMax)};
+}
+/// Of vertex (i, j) of a grid with so many vertices in a row.
+inline float morphAt(const std::array<float, 9>& byPlace, int side, int i, int j) noexcept {
+  const auto place = [side](int at) { return at == 0 ? 0u : at == side - 1 ? 2u : 1u; };
+  return byPlace[3 * place(j) + place(i)];
+}
+
 struct DrawnTile {
   FacePath path;
   TileMorph morph;
