@@ -12,7 +12,9 @@ TilePass::TilePass(const gl::Capabilities& capabilities, bool wireframe, Start s
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
   glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
+  // Not GREATER: a triangle that snapping to sub-pixels leaves hardly any area has depth extrapolated from slopes of
+  // any size, perhaps clamped to 0. Its pixel is ground all the same.
+  glDepthFunc(GL_GEQUAL);
   glDepthMask(GL_TRUE);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glEnable(GL_CULL_FACE);
