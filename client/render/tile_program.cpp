@@ -89,11 +89,13 @@ TileProgram::TileProgram(gl::Program program, const TileVariant& variant)
   parentOriginLow_ = program_.uniform("parentOriginLow");
 }
 
-void TileProgram::begin(const Camera& camera, const EffectList& effects) {
+void TileProgram::begin(const Camera& camera, const EffectList& effects, double viewportScale) {
   program_.use();
   cameraBody_ = camera.positionBody;
   stepExponent_.reset();
-  setUniform(clipRows_, glm::mat3(clipRows(camera)));
+  const glm::dmat3 toPicture(glm::dvec3(1 / viewportScale, 0, 0), glm::dvec3(0, 1 / viewportScale, 0),
+                             glm::dvec3(0, 0, 1));
+  setUniform(clipRows_, glm::mat3(toPicture * clipRows(camera)));
   setUniform(nearMeters_, static_cast<float>(camera.nearMeters));
   const DoubleFloat3 position = fromDouble(camera.positionBody);
   setUniform(cameraHigh_, position.hi);

@@ -39,8 +39,8 @@ class TileProgram {
   static Result<TileProgram> build(const TileVariant& variant, const EffectList& effects,
                                    const gl::Capabilities& capabilities);
 
-  /// Makes it current for this camera.
-  void begin(const Camera& camera, const EffectList& effects);
+  /// Makes it current for this camera. viewportScale: how much larger the viewport is than the picture (guard_band.h).
+  void begin(const Camera& camera, const EffectList& effects, double viewportScale);
   /// Makes it current again in the same pass.
   void resume() const { program_.use(); }
   /// Sets a tile's uniforms and binds its array. False if this placement cannot reach the tile (Integer, absurdly far).

@@ -16,6 +16,7 @@
 #include "client/render/effect_pass.h"
 #include "client/render/gpu_self_test.h"
 #include "client/render/gpu_tiles.h"
+#include "client/render/guard_band.h"
 #include "client/render/level_blend.h"
 #include "client/render/tile_pass.h"
 #include "client/render/tile_program.h"
@@ -158,6 +159,8 @@ struct TileRenderer::State {
   template <class DrawTile>
   void forEachTile(const Camera& camera, std::span<const TileDraw> list, Placement placement, TilePurpose purpose,
                    const DrawTile& drawTile) {
+    std::optional<GuardBand> band;
+    if (purpose == TilePurpose::Shaded || purpose == TilePurpose::Coverage) band.emplace(capabilities, camera);
     std::array<TileProgram*, 2> begun{};  // for tiles as they are, for those that morph
     const TileProgram* current = nullptr;
     std::vector<TileDraw> unreachable;
@@ -168,11 +171,12 @@ struct TileRenderer::State {
       if (program == nullptr) {
         program = programOrFallback({placement, purpose, morphs});
         if (program == nullptr) return;
-        program->begin(camera, effects);
+        program->begin(camera, effects, band ? band->scale() : 1);
       } else if (program != current) {
         program->resume();
       }
       current = program;
+      if (band) band->cullFor(draw.tile->metadata.sphere);
       if (program->place(draw, scratch)) {
         drawTile(*program, draw);
         if (capabilities.rendersOnCpu && ++drawn % kTilesPerFlush == 0) glFlush();

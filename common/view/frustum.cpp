@@ -76,6 +76,13 @@ bool Frustum::contains(const glm::dvec3& pointBody) const noexcept {
   return true;
 }
 
+bool Frustum::contains(const Sphere& sphereBody) const noexcept {
+  const glm::dvec3 p = sphereBody.center - cameraBody_;
+  for (std::size_t i = 0; i < normals_.size(); ++i)
+    if (!(glm::dot(normals_[i], p) >= offsets_[i] + sphereBody.radiusMeters)) return false;
+  return true;
+}
+
 /// True when the axis proves hull (camera-relative) and frustum apart. The frustum is its near corners plus all sums of
 /// its corner rays: along an axis it is bounded on one side exactly when no ray points there. axisScale: what the axis'
 /// rounding is relative to.

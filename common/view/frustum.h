@@ -18,6 +18,8 @@ class Frustum {
   /// bodies' faces and edges, so that false positives are rare.
   bool mayContain(const std::array<glm::dvec3, 8>& hullBody) const noexcept;
   bool contains(const glm::dvec3& pointBody) const noexcept;
+  /// All of it. A sphere that touches a plane within rounding counts as one or the other.
+  bool contains(const Sphere& sphereBody) const noexcept;
 
  private:
   using Hull = std::array<glm::dvec3, 8>;

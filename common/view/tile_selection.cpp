@@ -319,15 +319,30 @@ TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const
   return Selector(camera, body, resident, settings).run();
 }
 
+namespace {
+
+/// What bounds the ground of a tile, by what is known.
+HeightRange knownHeights(const FacePath& path, const SelectionBody& body, const ResidentLookup& resident) {
+  if (const ResidentTile* tile = resident(path)) return tile->ownHeights.value_or(tile->subtreeHeights);
+  for (int level = path.level() - 1; level >= 0; --level) {
+    const ResidentTile* above = resident(path.ancestor(level));
+    if (above == nullptr) continue;
+    if (level + 1 < path.level() || !above->quarterHeights) return above->subtreeHeights;
+    // Where the tile is missing, its parent's mesh is what would be seen there, give or take what the edges of the
+    // tiles around are finer.
+    const auto& errors = body.geometricErrorMeters;
+    const double error = errors.empty() ? 0.0 : errors[std::min(static_cast<std::size_t>(level), errors.size() - 1)];
+    const HeightRange& quarter = (*above->quarterHeights)[static_cast<std::size_t>(path.digit(level))];
+    return {quarter.minMeters - error, quarter.maxMeters + error};
+  }
+  return body.heights;
+}
+
+}  // namespace
+
 bool tileMayBeSeen(const FacePath& path, const Camera& camera, const SelectionBody& body,
                    const ResidentLookup& resident) {
-  HeightRange heights = body.heights;
-  for (int level = path.level(); level >= 0; --level) {
-    const ResidentTile* tile = resident(path.ancestor(level));
-    if (tile == nullptr) continue;
-    heights = level == path.level() && tile->ownHeights ? *tile->ownHeights : tile->subtreeHeights;
-    break;
-  }
+  const HeightRange heights = knownHeights(path, body, resident);
   const TileBounds bounds = tileBounds(path, body.radiusMeters, heights, body.occluderRadiusMeters);
   return Frustum(camera).mayContain(bounds.hull) &&
          !Horizon(camera.positionBody, body.radiusMeters, camera.altitudeMeters, body.occluderRadiusMeters)

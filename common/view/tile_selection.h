@@ -69,7 +69,8 @@ struct TileSelection {
   bool rootsMissing = false;       ///< some visible face has no resident tile at all: nothing can be drawn there yet
 };
 
-/// Whether selection would think that the tile may be in view, by what is known of it or of the nearest tile above it.
+/// Whether the tile's ground may be in view: by its own mesh, or, if nothing is known of it, by its parent's over its
+/// footprint (which is what shows in its place), or else by what the nearest tile above says of all below it.
 bool tileMayBeSeen(const FacePath& path, const Camera& camera, const SelectionBody& body,
                    const ResidentLookup& resident);
 

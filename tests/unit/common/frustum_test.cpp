@@ -98,6 +98,28 @@ TEST(Frustum, ContainsWhatThePictureShows) {
   }
 }
 
+TEST(Frustum, ContainsASphereWhoseEveryPointItContains) {
+  Views views;
+  int contained = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Camera camera = views.camera();
+    const Frustum frustum(camera);
+    const double distance = std::pow(10.0, views.between(-3, 6));
+    const glm::dvec3 center = camera.positionBody + camera.right * (distance * views.between(-0.5, 0.5)) +
+                              camera.up * (distance * views.between(-0.5, 0.5)) - camera.backward * distance;
+    const double radiusMeters = distance * views.between(0, 0.6);
+    bool allInside = true;
+    for (int j = 0; j < 500; ++j) {
+      const glm::dvec3 way(views.between(-1, 1), views.between(-1, 1), views.between(-1, 1));
+      allInside = allInside && frustum.contains(center + glm::normalize(way) * radiusMeters);
+    }
+    const bool answer = frustum.contains(Sphere{center, radiusMeters});
+    EXPECT_TRUE(allInside || !answer) << i;
+    contained += answer ? 1 : 0;
+  }
+  EXPECT_GT(contained, 100);
+}
+
 TEST(Frustum, NeverMissesATileAndRarelyTakesOneTooMany) {
   Views views;
   RecordProperty("seed", kSeed);
