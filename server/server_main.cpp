@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "common/byte_size.h"
 #include "common/command_line.h"
 #include "common/memory/heap_policy.h"
 #include "common/scene/scene.h"
@@ -22,7 +23,6 @@
 #include "server/http/tile_service.h"
 #include "server/scenes/scene_file.h"
 #include "server/server_options.h"
-#include "server/store/byte_size.h"
 
 namespace terrane {
 namespace {

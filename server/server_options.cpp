@@ -5,11 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "common/byte_size.h"
 #include "common/command_line.h"
 #include "server/config/config_file.h"
 #include "server/http/listen_address.h"
 #include "server/scenes/scene_file.h"
-#include "server/store/byte_size.h"
 
 namespace terrane {
 namespace {

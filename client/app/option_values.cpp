@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "client/net/simulated_link.h"
+#include "common/byte_size.h"
 #include "common/command_line.h"
 
 namespace terrane {
@@ -95,20 +96,12 @@ Result<ViewPose> parseCamera(std::string_view text) {
                   values[3] * kRadiansPerDegree, values[4] * kRadiansPerDegree};
 }
 
-Result<std::size_t> parseByteSize(std::string_view text, std::string_view flag) {
-  const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
-  const auto number = parseNumber(text.substr(0, unitAt));
-  const std::string_view unit = text.substr(unitAt);
-  double scale = 0;
-  for (const auto& [name, bytes] :
-       {std::pair{"", 1.0}, std::pair{"KiB", 1024.0}, std::pair{"MiB", 1048576.0}, std::pair{"GiB", 1073741824.0}})
-    if (unit == name) scale = bytes;
-  if (!number || scale == 0)
-    return flagError(flag, fmt::format("\"{}\" is no size: write it as 256MiB, 2GiB or in bytes", text));
-  const double bytes = *number * scale;
-  if (bytes < 1048576.0 || bytes > 1e15)
-    return flagError(flag, fmt::format("\"{}\" is out of range: 1MiB to 900000GiB", text));
-  return static_cast<std::size_t>(bytes);
+Result<std::size_t> parseBudget(std::string_view text, std::string_view flag) {
+  constexpr std::size_t kLeast = 1u << 20;
+  const auto bytes = parseByteSize(text, flag);
+  if (bytes && *bytes < kLeast)
+    return flagError(flag, fmt::format("\"{}\" is out of range: {} or more", text, formatByteSize(kLeast)));
+  return bytes;
 }
 
 Result<std::uint64_t> parseBandwidth(std::string_view text) {

@@ -23,8 +23,8 @@ Result<std::pair<int, int>> parseSize(std::string_view text);
 /// "LON,LAT,ALT[,HEADING[,PITCH]]" in degrees and metres; heading 0 and pitch -90 where not given. Errors name
 /// "--camera".
 Result<ViewPose> parseCamera(std::string_view text);
-/// "128MiB", "2GiB", "65536"; at least 1 MiB. Errors name the flag.
-Result<std::size_t> parseByteSize(std::string_view text, std::string_view flag);
+/// A size (common/byte_size.h) of at least 1 MiB. Errors (TooLarge, too) name the flag.
+Result<std::size_t> parseBudget(std::string_view text, std::string_view flag);
 /// "2MB/s", "500KB/s", "2MiB/s", or bytes per second; 1 KB/s to 1000 GB/s, or 0. Errors name "--bandwidth".
 Result<std::uint64_t> parseBandwidth(std::string_view text);
 /// Names of --without.

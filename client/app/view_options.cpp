@@ -229,9 +229,9 @@ Result<ViewOptions> checked(RawOptions raw, EnvironmentLookup environment) {
         checkRange("--latency", raw.latencyMs, 0, 10'000), checkCapture(o)})
     if (!range) return range.error();
   o.verticalFieldOfView = raw.fieldOfViewDegrees * kRadiansPerDegree;
-  const auto cacheBudget = parseByteSize(raw.cacheBudget, "--cache-budget");
+  const auto cacheBudget = parseBudget(raw.cacheBudget, "--cache-budget");
   if (!cacheBudget) return cacheBudget.error();
-  const auto memoryBudget = parseByteSize(raw.memoryBudget, "--memory-budget");
+  const auto memoryBudget = parseBudget(raw.memoryBudget, "--memory-budget");
   if (!memoryBudget) return memoryBudget.error();
   o.cacheBudgetBytes = *cacheBudget;
   o.memoryBudgetBytes = *memoryBudget;

@@ -9,8 +9,8 @@
 
 namespace terrane {
 
-/// "256MiB", "1 GiB", "64KiB", "1000000" (bytes), "500MB" (10^6). Whole numbers only. Errors (InvalidArgument,
-/// TooLarge) name the given field.
+/// "256MiB", "1.5 GiB", "64KiB", "1000000" (bytes), "500MB" (10^6); rounded down to whole bytes. Errors
+/// (InvalidArgument, TooLarge) name the given field.
 Result<std::size_t> parseByteSize(std::string_view text, std::string_view field);
 
 /// "256 MiB", with one decimal where it is not whole.
