@@ -1,9 +1,10 @@
 #pragma once
 // Room around the picture in which software GL need not clip triangles. Mesa's llvmpipe clips at the viewport's edges,
 // and where it clips any triangle of a batch it culls all of them by where they face before their corners are snapped
-// to sub-pixels; one seen along its plane may face the camera only after that, and its pixels would stay open (one in
-// 500 million). So the viewport reaches far beyond the framebuffer, at no cost, and the few tiles that are clipped even
-// so, those around the camera, are not culled. GL thread only.
+// to sub-pixels; one seen along its plane may face the camera only after that, and its pixels would stay open. So the
+// viewport reaches far beyond the framebuffer, and the few tiles that are clipped even so, those around the camera, are
+// not culled (culling none at all costs software GL a good part of a frame). tests/capture/tile_pass_test.cpp shows
+// both. GL thread only.
 
 #include <optional>
 

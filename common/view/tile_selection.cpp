@@ -46,6 +46,11 @@ HeightRange intersection(const HeightRange& own, const HeightRange& inherited) n
   return both.minMeters <= both.maxMeters ? both : own;
 }
 
+double errorMetersOf(const SelectionBody& body, int level) {
+  const auto& errors = body.geometricErrorMeters;
+  return errors.empty() ? 0.0 : errors[std::min(static_cast<std::size_t>(level), errors.size() - 1)];
+}
+
 /// The wanted tree is grown level by level; the drawn tree is then cut out of it: it can only be coarser, for it
 /// refines under the same conditions and one more.
 class Selector {
@@ -108,7 +113,7 @@ class Selector {
   }
 
   void judge(Node& node, const ResidentTile* tile) const {
-    const double error = errorMeters(node.path.level());
+    const double error = errorMetersOf(body_, node.path.level());
     if (!node.known) {
       // An ancestor's heights span more than this tile's: a camera between them would seem to touch the ground
       // everywhere.
@@ -154,11 +159,6 @@ class Selector {
   bool mayBeSeen(const TileBounds& bounds) const {
     return (!settings_.horizonCulling || !horizon_.hides(bounds.horizonPoint)) &&
            (!settings_.frustumCulling || frustum_.mayContain(bounds.hull));
-  }
-
-  double errorMeters(int level) const {
-    const auto& errors = body_.geometricErrorMeters;
-    return errors.empty() ? 0.0 : errors[std::min(static_cast<std::size_t>(level), errors.size() - 1)];
   }
 
   /// False if tiles were forced that this round had already passed: then it must be done again.
@@ -309,18 +309,6 @@ class Selector {
   bool rootsMissing_ = false;
 };
 
-}  // namespace
-
-TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const ResidentLookup& resident,
-                          const SelectionSettings& settings) {
-  const glm::dvec3& p = camera.positionBody;
-  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return {};
-  if (!std::isfinite(pixelsPerRadian(camera))) return {};  // no order among errors that are NaN
-  return Selector(camera, body, resident, settings).run();
-}
-
-namespace {
-
 /// What bounds the ground of a tile, by what is known.
 HeightRange knownHeights(const FacePath& path, const SelectionBody& body, const ResidentLookup& resident) {
   if (const ResidentTile* tile = resident(path)) return tile->ownHeights.value_or(tile->subtreeHeights);
@@ -330,8 +318,7 @@ HeightRange knownHeights(const FacePath& path, const SelectionBody& body, const 
     if (level + 1 < path.level() || !above->quarterHeights) return above->subtreeHeights;
     // Where the tile is missing, its parent's mesh is what would be seen there, give or take what the edges of the
     // tiles around are finer.
-    const auto& errors = body.geometricErrorMeters;
-    const double error = errors.empty() ? 0.0 : errors[std::min(static_cast<std::size_t>(level), errors.size() - 1)];
+    const double error = errorMetersOf(body, level);
     const HeightRange& quarter = (*above->quarterHeights)[static_cast<std::size_t>(path.digit(level))];
     return {quarter.minMeters - error, quarter.maxMeters + error};
   }
@@ -339,6 +326,14 @@ HeightRange knownHeights(const FacePath& path, const SelectionBody& body, const 
 }
 
 }  // namespace
+
+TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const ResidentLookup& resident,
+                          const SelectionSettings& settings) {
+  const glm::dvec3& p = camera.positionBody;
+  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return {};
+  if (!std::isfinite(pixelsPerRadian(camera))) return {};  // no order among errors that are NaN
+  return Selector(camera, body, resident, settings).run();
+}
 
 bool tileMayBeSeen(const FacePath& path, const Camera& camera, const SelectionBody& body,
                    const ResidentLookup& resident) {

@@ -18,6 +18,13 @@ using namespace terrane::testing;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
+/// So that the order of requests is that of the queue.
+StreamOptions oneConnection(const std::string& url) {
+  StreamOptions options = quickOptions(url);
+  options.connections = 1;
+  return options;
+}
+
 TEST(TileStream, WrongServerNamesTheFlag) {
   const auto stream = TileStream::open(quickOptions("moon.example"), nullptr);
   ASSERT_FALSE(stream);
@@ -49,9 +56,7 @@ TEST(TileStream, BringsTheWholeChainWithOneRequestATile) {
 
 TEST(TileStream, AncestorsAndLeavesAreAskedForAtOnceCoarsestFirstThenLargestError) {
   RunningWorld world(holding("/cube/0.glb"));
-  StreamOptions options = quickOptions(world.url());
-  options.connections = 1;
-  SmallViewer viewer(options);
+  SmallViewer viewer(oneConnection(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   viewer.frame({{path("cube/0"), 100, false},
                 {path("cube/0/12"), 50, true},
@@ -70,9 +75,7 @@ TEST(TileStream, AncestorsAndLeavesAreAskedForAtOnceCoarsestFirstThenLargestErro
 
 TEST(TileStream, WhatLiesBesideThePictureIsAskedForAfterAllThatIsInIt) {
   RunningWorld world(holding("/cube/0.glb"));
-  StreamOptions options = quickOptions(world.url());
-  options.connections = 1;
-  SmallViewer viewer(options);
+  SmallViewer viewer(oneConnection(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   viewer.frame({{path("cube/0"), 100, false},
                 {path("cube/1"), 100, true, true},
