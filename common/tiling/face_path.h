@@ -8,6 +8,8 @@
 //   2      +Y       -X   +Z         3      -Y       +X   +Z
 //   4      +Z       +Y   -X         5      -Z       +Y   +X
 // A digit's bit 0 is the half in u, bit 1 the half in v. At level L a face is 2^L columns (u) by 2^L rows (v).
+//
+// Ico faces 0..19: icosahedron.h. Digits 0, 1, 2 are the child at that corner, 3 the centre child: triangle_tile.h.
 
 #include <array>
 #include <compare>
@@ -44,6 +46,11 @@ class FacePath {
 
   /// Cube tile by column and row. Precondition: face in 0..5, level in 0..30, column and row < 2^level.
   static FacePath cubeTile(int face, int level, std::uint32_t column, std::uint32_t row) noexcept;
+
+  /// A tile by what packedDigits() gives. Precondition: a face of the scheme, level in 0..30, digits < 4^level.
+  static constexpr FacePath fromPackedDigits(Scheme scheme, int face, int level, std::uint64_t digits) noexcept {
+    return FacePath(scheme, static_cast<std::uint8_t>(face), static_cast<std::uint8_t>(level), digits);
+  }
 
   /// Reads "cube/2/0312", "cube/2". Errors (InvalidArgument) name "scheme", "face" or "digits" as the field.
   static Result<FacePath> parse(std::string_view text);
