@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/numerics/strict_math.h"
+#include "common/tiling/icosahedron.h"
 
 namespace terrane {
 namespace {
@@ -20,23 +21,23 @@ std::int64_t roundHalfUp(double x) noexcept {
 
 }  // namespace
 
-double nominalTileWidthMeters(double radiusMeters, int level) noexcept {
-  return std::ldexp(kHalfPi * radiusMeters, -level);
+double nominalTileWidthMeters(double radiusMeters, int level, Scheme scheme) noexcept {
+  return std::ldexp((scheme == Scheme::Ico ? kIcosahedronEdgeAngle : kHalfPi) * radiusMeters, -level);
 }
 
-int stepExponent(double radiusMeters, int level) noexcept {
+int stepExponent(double radiusMeters, int level, Scheme scheme) noexcept {
   // frexp and ldexp are exact. W / 2^15 = fraction 2^exponent with the fraction in [1/2, 1): only a power of two itself
   // rounds up to exponent - 1.
   int exponent = 0;
-  const double fraction = std::frexp(nominalTileWidthMeters(radiusMeters, level), &exponent);
+  const double fraction = std::frexp(nominalTileWidthMeters(radiusMeters, level, scheme), &exponent);
   return (fraction > 0.5 ? exponent : exponent - 1) - 15;
 }
 
 double stepMeters(int stepExponent) noexcept { return std::ldexp(1.0, stepExponent); }
 
-int maxLevel(double radiusMeters) noexcept {
+int maxLevel(double radiusMeters, Scheme scheme) noexcept {
   int level = FacePath::kMaxLevel;
-  while (level > 0 && stepExponent(radiusMeters, level) < kMinStepExponent) --level;
+  while (level > 0 && stepExponent(radiusMeters, level, scheme) < kMinStepExponent) --level;
   return level;
 }
 

@@ -2,7 +2,8 @@
 // The lattice: every vertex of every tile of one level is rounded to integer multiples of one step, a power of two
 // metres, in the body frame. Two tiles that share a vertex then store the very same integers, over face edges and
 // corners too.
-//   step = 2^ceil(log2(W / 2^15)),  W = the tile's nominal width = (pi/2 R) / 2^level for the cube.
+//   step = 2^ceil(log2(W / 2^15)),  W = the tile's nominal width: the angle along an edge of a whole face, pi/2 for the
+//   cube and atan 2 for the icosahedron, times R / 2^level.
 // A tile stores offsets 0..65535 from its own origin, which is a lattice point too. Thread-safe, no failure.
 
 #include <cstdint>
@@ -22,15 +23,15 @@ inline constexpr int kTileOffsetMax = 65535;
 inline constexpr double kMinRadiusMeters = 250.0;
 inline constexpr double kMaxRadiusMeters = 7.0e8;
 
-/// (pi/2 R) / 2^level.
-double nominalTileWidthMeters(double radiusMeters, int level) noexcept;
+/// W above.
+double nominalTileWidthMeters(double radiusMeters, int level, Scheme scheme = Scheme::Cube) noexcept;
 
 /// step = 2^exponent metres, exactly as defined above (no logarithm is taken, so no last bit can differ).
-int stepExponent(double radiusMeters, int level) noexcept;
+int stepExponent(double radiusMeters, int level, Scheme scheme = Scheme::Cube) noexcept;
 double stepMeters(int stepExponent) noexcept;
 
 /// The finest level whose step is >= 2^kMinStepExponent metres, at most FacePath::kMaxLevel.
-int maxLevel(double radiusMeters) noexcept;
+int maxLevel(double radiusMeters, Scheme scheme = Scheme::Cube) noexcept;
 
 /// Nearest lattice point, halves up. Precondition: |position| / step < 2^51.
 LatticePoint roundToLattice(const glm::dvec3& positionBody, int stepExponent) noexcept;
