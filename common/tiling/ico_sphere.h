@@ -28,7 +28,7 @@ enum class IcoMap : std::uint8_t { Bisected, Gnomonic };
 
 /// How far a component of a computed direction may be from the exact map's; proofs in ico_sphere.cpp
 /// (ico_sphere_test). At grid level 36, of 64 cells at level 30: 9.1e-15 and 1.2e-15 of the radius, where the lattice's
-/// step is 3.4e-14 or more.
+/// step is 3.1e-14 or more.
 constexpr double icoDirectionError(IcoMap map, int gridLevel) noexcept {
   return map == IcoMap::Gnomonic ? 11 * 0x1p-53 : (2 * gridLevel + 10) * 0x1p-53;
 }
@@ -37,7 +37,7 @@ constexpr double icoDirectionError(IcoMap map, int gridLevel) noexcept {
 /// square roots. Precondition: 0 <= gridLevel <= 52.
 glm::dvec3 icoGridDirection(IcoMap map, int face, int gridLevel, const FaceWeights& weights) noexcept;
 
-/// The unit directions of a tile's corners 0, 1, 2.
+/// The unit directions of a tile's corners 0, 1, 2. Precondition: path is of the scheme Ico.
 std::array<glm::dvec3, kTriangleCorners> icoCornerDirections(IcoMap map, const FacePath& path) noexcept;
 
 /// By triangleGridIndex; each of triangleGridSize(cells).
@@ -45,12 +45,13 @@ struct DirectionSpans {
   std::span<double> x, y, z;
 };
 /// The unit directions of all vertices of a tile's grid: bit for bit those of icoGridDirection, at the cost of one
-/// square root each. Preconditions: ico tile, cells a power of two, log2(cells) <= 22.
+/// square root each. Precondition: path is of the scheme Ico.
 void icoGridDirections(IcoMap map, const FacePath& path, int cells, const DirectionSpans& out) noexcept;
 
-/// The tile of a level that holds a direction: any finite non-zero vector of any length. Faces as icosahedronFaceAt has
-/// them; below, a direction on the border between a corner child and the centre child is the centre child's. Borders
-/// are where the arithmetic sees them: the tile may end kIcoTileAtError radians short of the direction.
+/// The tile of a level, at most FacePath::kMaxLevel, that holds a direction: any finite non-zero vector of any length.
+/// Faces as icosahedronFaceAt has them; below, a direction on the border between a corner child and the centre child is
+/// the centre child's. Borders are where the arithmetic sees them: the tile may end kIcoTileAtError radians short of
+/// the direction.
 FacePath icoTileAt(IcoMap map, const glm::dvec3& direction, int level) noexcept;
 inline constexpr double kIcoTileAtError = 2.5e-14;
 

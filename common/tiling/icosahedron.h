@@ -47,7 +47,7 @@ struct FaceEdge {
 /// The face beyond an edge and which of its edges that is.
 FaceEdge beyondFaceEdge(int face, int edge) noexcept;
 
-/// The face that a direction passes through: any finite non-zero vector of any length. Within some 5e-16 radians of an
+/// The face that a direction passes through: any finite non-zero vector of any length. Within 1e-15 radians of an
 /// edge it may be the face on the other side. Where faces are equally near the answer is one in an octant's middle
 /// before one at an axis, those in the order of the axes; a zero coordinate counts as positive.
 int icosahedronFaceAt(const glm::dvec3& direction) noexcept;

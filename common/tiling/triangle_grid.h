@@ -1,6 +1,6 @@
 #pragma once
-// The triangular grid of a tile: a triangle whose edges have `cells` cells, a power of two, and so (cells + 1)
-// (cells + 2) / 2 vertices in rows parallel to the edge between corners 0 and 1. Integers; thread-safe.
+// The triangular grid of a tile: a triangle whose edges have `cells` cells, a power of two up to 2^15, and so
+// (cells + 1) (cells + 2) / 2 vertices in rows parallel to the edge between corners 0 and 1. Integers; thread-safe.
 
 #include <array>
 

@@ -50,8 +50,7 @@ std::array<FaceWeights, kTriangleCorners> tileCorners(const TriangleTile& tile) 
 std::optional<TriangleTile> tileWithCorners(int face, int level,
                                             const std::array<FaceWeights, kTriangleCorners>& corners) noexcept;
 
-/// A vertex of the tile's grid, in units of 2^-level / cells. Preconditions: cells <= 64 or so that level + log2(cells)
-/// <= 52, the vertex is of the grid.
+/// A vertex of the tile's grid, in units of 2^-level / cells. Precondition: the vertex is of the grid.
 FaceWeights gridVertexWeights(const TriangleTile& tile, int cells, const GridVertex& vertex) noexcept;
 /// The inverse; empty if the point is outside of the tile.
 std::optional<GridVertex> gridVertexAt(const TriangleTile& tile, int cells, const FaceWeights& weights) noexcept;

@@ -126,7 +126,7 @@ TEST(Icosahedron, FaceAtIsTheFaceThatHoldsTheDirectionWhateverItsLength) {
     const double length = std::ldexp(1.0, static_cast<int>(random() % 2000) - 1000);
     const int face = icosahedronFaceAt(direction * length);
     found.insert(face);
-    ASSERT_GE(depthIn(face, glm::normalize(direction)), -5e-16);
+    ASSERT_GE(depthIn(face, glm::normalize(direction)), -1e-15);
   }
   EXPECT_EQ(found.size(), 20u);
 }
