@@ -25,6 +25,8 @@
 namespace terrane {
 
 enum class IcoMap : std::uint8_t { Bisected, Gnomonic };
+/// Tiles are served by this one: its cells are more alike.
+inline constexpr IcoMap kIcoMap = IcoMap::Bisected;
 
 /// How far a component of a computed direction may be from the exact map's; proofs in ico_sphere.cpp
 /// (ico_sphere_test). At grid level 36, of 64 cells at level 30: 9.1e-15 and 1.2e-15 of the radius, where the lattice's

@@ -6,11 +6,13 @@
 
 #include "common/numerics/strict_math.h"
 #include "common/tiling/cube_sphere.h"
+#include "common/tiling/ico_sphere.h"
 #include "common/tiling/lattice.h"
 
-// Notation: a tile's footprint is the rectangle a in [a0, a1], b in [b0, b1] of the plane tangent to the face, so its
-// directions are those of n + a u + b v, and form a convex cone. The shell sector S is that cone between the radii rLow
-// and rHigh. All volumes contain S and are convex, so they contain every chord between its points too.
+// Notation: a cube tile's footprint is the rectangle a in [a0, a1], b in [b0, b1] of the plane tangent to the face, so
+// its directions are those of n + a u + b v, and form a convex cone. That of an ico tile is the spherical triangle of
+// its corners. The shell sector S is that cone between the radii rLow and rHigh. All volumes contain S and are convex,
+// so they contain every chord between its points too.
 //
 // Both the footprint and the radii are first grown by one lattice step. Rounding a vertex to the lattice moves it by at
 // most sqrt(3)/2 steps; the remaining 0.13 step (>= 4e-6 of the tile's width, and down to level 30 at least 25 ulp of
@@ -30,10 +32,12 @@ glm::dvec3 normalized(const glm::dvec3& p) noexcept {
 }
 
 struct Footprint {
-  FaceAxes axes;
+  Scheme scheme;
+  FaceAxes axes;  ///< cube, as are a0..b1
   double a0, a1, b0, b1;
   glm::dvec3 center;                  ///< unit
-  std::array<glm::dvec3, 4> corners;  ///< unit; (u, v) = 00 10 01 11
+  glm::dvec3 across;                  ///< where the box' first axis is to point
+  std::array<glm::dvec3, 4> corners;  ///< unit; (u, v) = 00 10 01 11; of a triangle the last is the third once more
 };
 
 /// A vertex moved by `slack` metres at a radius of at least `innerRadius` moves by less than this in the tangent plane:
@@ -42,12 +46,37 @@ double tangentPlaneMargin(double slack, double innerRadius) noexcept {
   return 2.5 * slack / (innerRadius - 2.0 * slack);
 }
 
+/// The three corners are moved away from the centre, in the plane that touches the sphere there, in which a vertex
+/// moves by less than `margin` (the same bound: a face's corners are 37.4 degrees from its centre), until each edge has
+/// moved by that much.
+Footprint triangleFootprint(const FacePath& path, double margin) noexcept {
+  const auto corners = icoCornerDirections(kIcoMap, path);
+  Footprint f{};
+  f.scheme = Scheme::Ico;
+  f.center = normalized(corners[0] + corners[1] + corners[2]);
+  f.across = corners[1] - corners[0];
+  std::array<glm::dvec3, kTriangleCorners> flat{};
+  for (std::size_t i = 0; i < flat.size(); ++i) flat[i] = corners[i] * (1.0 / dot(f.center, corners[i])) - f.center;
+  double nearestEdge = 1.0;
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    const glm::dvec3 &from = flat[i], &to = flat[(i + 1) % flat.size()];
+    nearestEdge = std::min(nearestEdge, length(cross(from, to)) / length(to - from));
+  }
+  const double grown = 1.0 + margin / nearestEdge;
+  for (std::size_t i = 0; i < f.corners.size(); ++i)
+    f.corners[i] = normalized(f.center + flat[std::min<std::size_t>(i, 2)] * grown);
+  return f;
+}
+
 Footprint footprintOf(const FacePath& path, double margin) noexcept {
+  if (path.scheme() == Scheme::Ico) return triangleFootprint(path, margin);
   const double scale = std::ldexp(2.0, -path.level());
   const double s0 = static_cast<double>(path.column()) * scale - 1.0;
   const double t0 = static_cast<double>(path.row()) * scale - 1.0;
   Footprint f{};
+  f.scheme = Scheme::Cube;
   f.axes = cubeFaceAxes(path.face());
+  f.across = f.axes.u;
   f.a0 = tanQuarterPi(s0) - margin;
   f.a1 = tanQuarterPi(s0 + scale) + margin;
   f.b0 = tanQuarterPi(t0) - margin;
@@ -63,7 +92,22 @@ Footprint footprintOf(const FacePath& path, double margin) noexcept {
 
 /// The largest dot(axis, d) over the unit directions d of the footprint, for an axis that is not itself one of them.
 /// The maximum is then on an edge; along b, (A + b B) / sqrt(1 + a^2 + b^2) peaks at b = B (1 + a^2) / A.
+/// Along a great circle it peaks where the axis, projected into the circle's plane, points.
+double largestDotOfTriangle(const Footprint& f, const glm::dvec3& axis) noexcept {
+  double largest = -1.0;
+  for (std::size_t i = 0; i < kTriangleCorners; ++i) {
+    const glm::dvec3 &from = f.corners[i], &to = f.corners[(i + 1) % kTriangleCorners];
+    largest = std::max(largest, dot(axis, from));
+    const glm::dvec3 normal = normalized(cross(from, to));
+    const glm::dvec3 peak = axis - normal * dot(normal, axis);
+    if (dot(cross(from, peak), normal) > 0 && dot(cross(peak, to), normal) > 0)
+      largest = std::max(largest, length(peak));
+  }
+  return largest;
+}
+
 double largestDot(const Footprint& f, const glm::dvec3& axis) noexcept {
+  if (f.scheme == Scheme::Ico) return largestDotOfTriangle(f, axis);
   const double n = dot(axis, f.axes.normal);
   const double u = dot(axis, f.axes.u);
   const double v = dot(axis, f.axes.v);
@@ -107,7 +151,7 @@ std::array<glm::dvec3, 8> hullOf(const Footprint& f, double rLow, double rHigh) 
 
 OrientedBox boxOf(const Footprint& f, double rLow, double rHigh) noexcept {
   const glm::dvec3 up = f.center;
-  const glm::dvec3 tangentU = normalized(f.axes.u - up * dot(f.axes.u, up));
+  const glm::dvec3 tangentU = normalized(f.across - up * dot(f.across, up));
   const std::array<glm::dvec3, 3> directions{tangentU, cross(up, tangentU), up};
   OrientedBox box;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -194,24 +238,27 @@ TileBounds boundsOver(const FacePath& footprintPath, double step, double radiusM
 
 TileBounds tileBounds(const FacePath& path, double radiusMeters, const HeightRange& heights,
                       double occluderRadiusMeters) noexcept {
-  const double step = stepMeters(stepExponent(radiusMeters, path.level()));
+  const double step = stepMeters(stepExponent(radiusMeters, path.level(), path.scheme()));
   return boundsOver(path, step, radiusMeters, heights, occluderRadiusMeters);
 }
 
 TileBounds tileQuarterBounds(const FacePath& path, int digit, double radiusMeters, const HeightRange& heights,
                              double occluderRadiusMeters) noexcept {
-  const double step = stepMeters(stepExponent(radiusMeters, path.level()));
+  const double step = stepMeters(stepExponent(radiusMeters, path.level(), path.scheme()));
   return boundsOver(path.child(digit), step, radiusMeters, heights, occluderRadiusMeters);
 }
 
-double lowestSurfaceRadiusMeters(double radiusMeters, double lowestHeightMeters, int cellsPerEdge) noexcept {
+double lowestSurfaceRadiusMeters(double radiusMeters, double lowestHeightMeters, int cellsPerEdge,
+                                 Scheme scheme) noexcept {
   // A cell's longer diagonal, per unit of its width, is sqrt((1 + X^2) (1 + Y^2) (2 + (X + Y)^2)) / (1 + X^2 + Y^2) at
   // the face point (X, Y): sqrt(2) in the middle, sqrt(8/3) at a cube corner, where cells are rhombi of 120
   // degrees. 1.2825... is half of that times pi/2. A triangle's nearest point is on its longest edge, or (acute) its
   // circumcentre: no farther off than that. cos x >= 1 - x^2 / 2.
-  const double halfDiagonal = 1.2825498301618641 / static_cast<double>(cellsPerEdge);
-  const double step = stepMeters(stepExponent(radiusMeters, 0));
-  return (radiusMeters + lowestHeightMeters) * (1.0 - 0.5 * halfDiagonal * halfDiagonal) - step;
+  // An icosahedral cell's edge is at most 1.2 times the face's edge of atan 2 by the number of cells (ico_shapes_test),
+  // and its circumcentre, as it is acute, within 1 / sqrt(3) of that.
+  const double reach = (scheme == Scheme::Cube ? 1.2825498301618641 : 0.7670552) / static_cast<double>(cellsPerEdge);
+  const double step = stepMeters(stepExponent(radiusMeters, 0, scheme));
+  return (radiusMeters + lowestHeightMeters) * (1.0 - 0.5 * reach * reach) - step;
 }
 
 }  // namespace terrane

@@ -1,9 +1,9 @@
 #pragma once
-// Bounding volumes of a cube tile as a pure function of (path, radius, height range), so that server, client and tests
-// agree, and a tile that nobody has built yet can be culled by its parent's subtree height range. Every volume contains
-// all surface points of the tile's footprint with heights in the range, the lattice points that they are rounded to,
-// and every chord between them (a mesh sags below the sphere it samples); so do the volumes of its ancestors. The
-// proofs are in tile_bounds.cpp. Body frame, metres. Thread-safe.
+// Bounding volumes of a tile of either scheme as a pure function of (path, radius, height range), so that server,
+// client and tests agree, and a tile that nobody has built yet can be culled by its parent's subtree height range.
+// Every volume contains all surface points of the tile's footprint with heights in the range, the lattice points that
+// they are rounded to, and every chord between them (a mesh sags below the sphere it samples); so do the volumes of its
+// ancestors. The proofs are in tile_bounds.cpp. Body frame, metres. Thread-safe.
 
 #include <array>
 #include <glm/vec3.hpp>
@@ -38,7 +38,8 @@ inline constexpr double kSkirtCornerFlareSteps = 2.0 * kSkirtFlareSteps;
 
 struct TileBounds {
   /// The tile lies within the convex hull of these: corners (u, v) = 00 10 01 11 of the inner face, then of the outer
-  /// face. The four side faces are great-circle planes, as the tile's own edges are.
+  /// face. The side faces are great-circle planes, as the tile's own edges are. An ico tile has three corners;
+  /// the third stands for the fourth too.
   std::array<glm::dvec3, 8> hull{};
   OrientedBox box;
   Sphere sphere;
@@ -59,6 +60,7 @@ TileBounds tileQuarterBounds(const FacePath& path, int digit, double radiusMeter
 
 /// The radius of a sphere that no triangle of any drawn tile dips below, given the lowest height of the body and the
 /// number of cells on a tile's edge: (R + min) times the cosine of half the diagonal of a level-0 cell.
-double lowestSurfaceRadiusMeters(double radiusMeters, double lowestHeightMeters, int cellsPerEdge) noexcept;
+double lowestSurfaceRadiusMeters(double radiusMeters, double lowestHeightMeters, int cellsPerEdge,
+                                 Scheme scheme = Scheme::Cube) noexcept;
 
 }  // namespace terrane

@@ -8,12 +8,14 @@
 #include <cstdint>
 
 #include "common/tiling/face_path.h"
+#include "common/tiling/tile_neighbours.h"
 
 namespace terrane {
 
 struct TileMorph {
-  float own = 0;                          ///< of all vertices that are on no edge
-  std::array<float, kSideCount> sides{};  ///< by Side: edges without their ends, and corners
+  float own = 0;  ///< of all vertices that are on no edge
+  /// Edges without their ends, by number, and from kMostEdges on corners (tile_neighbours.h): for the cube, by Side.
+  std::array<float, 2 * kMostEdges> sides{};
   /// Bit e is set where edge e is the parent's, all the way: the odd vertices of that edge are then not drawn. A
   /// coarser tile beyond has none, and an equal one leaves them out too.
   std::uint8_t coarserEdges = 0;

@@ -56,8 +56,7 @@ bool everySideOf(const TileMorph& morph, Predicate holds) {
 /// The tiles around one, at its own level.
 template <class Function>
 void forEachNeighbour(const FacePath& path, const Function& function) {
-  for (int side = 0; side < kSideCount; ++side)
-    if (const auto neighbour = path.neighbour(static_cast<Side>(side))) function(*neighbour);
+  for (const FacePath& tile : tilesAround(path)) function(tile);
 }
 
 }  // namespace

@@ -1,42 +1,29 @@
 #include "common/view/tile_borders.h"
 
 #include <algorithm>
-#include <array>
 
 namespace terrane {
 namespace {
-
-/// The two edges that meet in each corner, by Side.
-constexpr std::array<std::array<Side, 2>, 4> kEdgesOfCorner{
-    {{Side::UMin, Side::VMin}, {Side::UMax, Side::VMin}, {Side::UMin, Side::VMax}, {Side::UMax, Side::VMax}}};
 
 /// What is around an edge or a corner.
 struct Around {
   bool coarser = false, finer = false;
   float largest = 0;  ///< morph of an equal
 
-  Around() = default;
-  Around(const DrawnCut& cut, const FacePath& path, Side side) {
-    switch (beyond(cut, path, side)) {
-      case Beyond::Nothing:
+  void add(const DrawnCut& cut, const FacePath& tile) {
+    switch (drawnAt(cut, tile)) {
+      case DrawnThere::Nothing:
         return;
-      case Beyond::Coarser:
+      case DrawnThere::Coarser:
         coarser = true;
         return;
-      case Beyond::Finer:
+      case DrawnThere::Finer:
         finer = true;
         return;
-      case Beyond::Equal:
-        largest = cut.own(*path.neighbour(side));
+      case DrawnThere::Equal:
+        largest = std::max(largest, cut.own(tile));
         return;
     }
-  }
-  Around with(const Around& other) const {
-    Around both = *this;
-    both.coarser = coarser || other.coarser;
-    both.finer = finer || other.finer;
-    both.largest = std::max(largest, other.largest);
-    return both;
   }
   /// Of a tile whose own morph this is.
   float value(float own) const { return coarser ? 1.0f : finer ? 0.0f : std::max(own, largest); }
@@ -79,29 +66,28 @@ std::optional<FacePath> DrawnCut::leafOver(const FacePath& path) const {
   return std::nullopt;
 }
 
-Beyond beyond(const DrawnCut& cut, const FacePath& path, Side side) {
-  const std::optional<FacePath> neighbour = path.neighbour(side);
-  if (!neighbour) return Beyond::Nothing;
-  if (cut.contains(*neighbour)) return Beyond::Equal;
-  if (cut.isRefined(*neighbour)) return Beyond::Finer;
-  return cut.leafOver(*neighbour) ? Beyond::Coarser : Beyond::Nothing;
+DrawnThere drawnAt(const DrawnCut& cut, const FacePath& path) {
+  if (cut.contains(path)) return DrawnThere::Equal;
+  if (cut.isRefined(path)) return DrawnThere::Finer;
+  return cut.leafOver(path) ? DrawnThere::Coarser : DrawnThere::Nothing;
 }
 
 TileMorph morphOf(const DrawnCut& cut, const FacePath& path) {
   TileMorph morph;
   morph.own = cut.own(path);
-  std::array<Around, kSideCount> around;
-  for (std::size_t side = 0; side < kSideCount; ++side) around[side] = Around(cut, path, static_cast<Side>(side));
-  for (std::size_t edge = 0; edge < kEdgeCount; ++edge) {
-    morph.sides[edge] = around[edge].value(morph.own);
+  const int edges = edgeCount(path.scheme());
+  for (int edge = 0; edge < edges; ++edge) {
+    Around around;
+    around.add(cut, tileBeyondEdge(path, edge));
+    const float value = around.value(morph.own);
+    morph.sides[static_cast<std::size_t>(edge)] = value;
     // Between equals too: else a split beyond, which makes the border a coarser tile's, would turn the diagonals there.
-    if (morph.sides[edge] == 1) morph.coarserEdges = static_cast<std::uint8_t>(morph.coarserEdges | (1u << edge));
+    if (value == 1) morph.coarserEdges = static_cast<std::uint8_t>(morph.coarserEdges | (1u << edge));
   }
-  for (std::size_t corner = kEdgeCount; corner < kSideCount; ++corner) {
-    const auto [one, other] = kEdgesOfCorner[corner - kEdgeCount];
-    const Around all =
-        around[corner].with(around[static_cast<std::size_t>(one)]).with(around[static_cast<std::size_t>(other)]);
-    morph.sides[corner] = all.value(morph.own);
+  for (int corner = 0; corner < edges; ++corner) {
+    Around around;
+    for (const FacePath& tile : tilesAtCorner(path, corner)) around.add(cut, tile);
+    morph.sides[static_cast<std::size_t>(kMostEdges + corner)] = around.value(morph.own);
   }
   return morph;
 }

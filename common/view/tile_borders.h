@@ -41,9 +41,9 @@ class DrawnCut {
   std::unordered_map<FacePath, int> descendants_;  ///< how many of the cut's tiles are below
 };
 
-/// What lies beyond a side, at a tile's own level.
-enum class Beyond : std::uint8_t { Nothing, Coarser, Equal, Finer };
-Beyond beyond(const DrawnCut& cut, const FacePath& path, Side side);
+/// What is drawn where a tile of some level lies.
+enum class DrawnThere : std::uint8_t { Nothing, Coarser, Equal, Finer };
+DrawnThere drawnAt(const DrawnCut& cut, const FacePath& path);
 
 TileMorph morphOf(const DrawnCut& cut, const FacePath& path);
 

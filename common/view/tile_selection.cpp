@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "common/tiling/tile_neighbours.h"
 #include "common/view/frustum.h"
 #include "common/view/horizon.h"
 #include "common/view/level_of_detail.h"
@@ -36,7 +37,7 @@ struct Node {
   bool drawnRefined = false;
   int parent = kNone;
   int firstChild = kNone;      ///< set if the wanted tree refines it
-  int firstNeighbour = kNone;  ///< of kSideCount entries in neighbours_, if the wanted tree refines it
+  int firstNeighbour = kNone;  ///< of TileList::kMost entries in neighbours_, if the wanted tree refines it
 };
 
 /// Both heights bound the tile, so their intersection does. Empty only if one of them is wrong: then the tile's own
@@ -76,6 +77,9 @@ class Selector {
   }
 
  private:
+  /// By the order of tilesAround.
+  using Neighbours = std::array<int, TileList::kMost>;
+
   void addRoot(int face) {
     Node node;
     node.path = FacePath::wholeFace(body_.scheme, face);
@@ -170,7 +174,7 @@ class Selector {
       indexLevel(level);
       for (const int index : candidates(level)) {
         if (visibleCount_ + 4 > settings_.maxTiles) break;
-        const std::array<int, kSideCount> around = neighbours(index);
+        const Neighbours around = neighbours(index);
         if (std::any_of(around.begin(), around.end(), [](int n) { return n == kCoarser; })) {
           forceCoarserNeighbours(index, around);
         } else {
@@ -182,10 +186,10 @@ class Selector {
     return forced_.size() == forcedBefore;
   }
 
-  void forceCoarserNeighbours(int index, const std::array<int, kSideCount>& around) {
-    for (int side = 0; side < kSideCount; ++side)
-      if (around[static_cast<std::size_t>(side)] == kCoarser)
-        forced_.insert(at(index).path.neighbour(static_cast<Side>(side))->parent());
+  void forceCoarserNeighbours(int index, const Neighbours& around) {
+    const TileList tiles = tilesAround(at(index).path);
+    for (std::size_t i = 0; i < tiles.tiles().size(); ++i)
+      if (around[i] == kCoarser) forced_.insert(tiles.tiles()[i].parent());
   }
 
   /// Tiles of a level whose error is too large. Worst first, so that the bound on the work cuts where it shows least.
@@ -197,7 +201,7 @@ class Selector {
     return wanted;
   }
 
-  void refine(int index, const std::array<int, kSideCount>& around) {
+  void refine(int index, const Neighbours& around) {
     node(index).firstNeighbour = static_cast<int>(neighbours_.size());
     neighbours_.insert(neighbours_.end(), around.begin(), around.end());
     node(index).firstChild = static_cast<int>(nodes_.size());
@@ -211,20 +215,19 @@ class Selector {
   }
 
   /// The nodes around a node: an index, kCoarser if a coarser tile of the wanted tree lies there, or kNone where
-  /// nothing does (beyond a cube corner, or where a culled tile was not looked into).
-  std::array<int, kSideCount> neighbours(int index) const {
-    std::array<int, kSideCount> around{};
-    for (int side = 0; side < kSideCount; ++side) {
-      int& found = around[static_cast<std::size_t>(side)];
-      found = kNone;
-      const std::optional<FacePath> path = at(index).path.neighbour(static_cast<Side>(side));
-      if (!path) continue;
-      if (const auto same = currentLevel_.find(*path); same != currentLevel_.end()) {
-        found = same->second;
-      } else if (path->level() > 0) {
+  /// nothing does (where a culled tile was not looked into, and at the end of the list).
+  Neighbours neighbours(int index) const {
+    Neighbours around;
+    around.fill(kNone);
+    const TileList tiles = tilesAround(at(index).path);
+    for (std::size_t i = 0; i < tiles.tiles().size(); ++i) {
+      const FacePath& path = tiles.tiles()[i];
+      if (const auto same = currentLevel_.find(path); same != currentLevel_.end()) {
+        around[i] = same->second;
+      } else if (path.level() > 0) {
         // One level up is as coarse as it can be: the tree is balanced so far.
-        const auto above = previousLevel_.find(path->parent());
-        if (above != previousLevel_.end() && at(above->second).visible) found = kCoarser;
+        const auto above = previousLevel_.find(path.parent());
+        if (above != previousLevel_.end() && at(above->second).visible) around[i] = kCoarser;
       }
     }
     return around;
@@ -257,7 +260,7 @@ class Selector {
   bool mayRefineDrawn(const Node& parent) const {
     for (int i = parent.firstChild; i < parent.firstChild + 4; ++i)
       if (at(i).needed && !at(i).drawable) return false;
-    for (int i = parent.firstNeighbour; i < parent.firstNeighbour + kSideCount; ++i) {
+    for (int i = parent.firstNeighbour; i < parent.firstNeighbour + static_cast<int>(TileList::kMost); ++i) {
       const int index = neighbours_[static_cast<std::size_t>(i)];
       if (index == kNone) continue;
       const Node& neighbour = at(index);

@@ -45,7 +45,10 @@ std::vector<DrawnTile> tilesOnTheirWay(std::span<const FacePath> paths, std::uin
   std::vector<DrawnTile> tiles = stitchedTiles(paths);
   for (DrawnTile& tile : tiles) {
     const FacePath& path = tile.path;
-    const auto isFiner = [&](Side side) { return beyond(cut, path, side) == Beyond::Finer; };
+    const auto isFiner = [&](Side side) {
+      const auto tile = path.neighbour(side);
+      return tile && drawnAt(cut, *tile) == DrawnThere::Finer;
+    };
     tile.morph.own = randomShare(seed, {path});
     const auto set = [&](Side side, bool finer, float share) {
       float& value = tile.morph.sides[static_cast<std::size_t>(side)];

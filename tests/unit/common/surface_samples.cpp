@@ -5,13 +5,49 @@
 #include <iostream>
 
 #include "common/tiling/cube_sphere.h"
+#include "common/tiling/ico_sphere.h"
 #include "common/tiling/lattice.h"
+#include "common/tiling/triangle_tile.h"
 
 namespace terrane::test {
 
 Random::Random(std::uint64_t seed) : engine(seed) { std::cout << "seed " << seed << '\n'; }
 
-Case randomCase(Random& random, int level) {
+namespace {
+
+/// Anywhere, in a corner of its face, or in the middle of one of its edges.
+FacePath randomTriangle(Random& random, int level) {
+  FacePath path = FacePath::wholeFace(Scheme::Ico, static_cast<int>(random.below(20)));
+  const std::uint64_t kind = random.below(4);
+  const int corner = static_cast<int>(random.below(3));
+  for (int i = 0; i < level; ++i) {
+    const int anywhere = static_cast<int>(random.below(4));
+    path = path.child(kind == 0 ? corner : kind == 1 ? (i == 0 ? corner : (corner + 1) % 3) : anywhere);
+  }
+  return path;
+}
+
+glm::dvec3 randomDirection(Random& random, const FacePath& path) {
+  const auto offset = [&](std::uint64_t most) -> std::uint64_t {
+    const std::uint64_t kind = random.below(4);
+    return kind == 0 ? 0 : kind == 1 ? most : random.below(most + 1);
+  };
+  if (path.scheme() == Scheme::Cube) {
+    const int grid = 20;
+    const std::uint64_t column = (std::uint64_t{path.column()} << grid) + offset(1u << grid);
+    const std::uint64_t row = (std::uint64_t{path.row()} << grid) + offset(1u << grid);
+    return cubeGridDirection(path.face(), path.level() + grid, column, row);
+  }
+  const int grid = 12, cells = 1 << grid;
+  const int i = static_cast<int>(offset(cells));
+  const int j = static_cast<int>(offset(static_cast<std::uint64_t>(cells - i)));
+  const FaceWeights weights = gridVertexWeights(triangleTile(path), cells, {i, j});
+  return icoGridDirection(kIcoMap, path.face(), path.level() + grid, weights);
+}
+
+}  // namespace
+
+Case randomCase(Random& random, int level, Scheme scheme) {
   const double radius = kMinRadiusMeters * std::pow(kMaxRadiusMeters / kMinRadiusMeters, random.unit());
   const std::uint64_t cells = std::uint64_t{1} << level;
   const auto index = [&] {
@@ -36,31 +72,26 @@ Case randomCase(Random& random, int level) {
       break;
     default: {
       // As thin as the tile is wide, anywhere.
-      const double width = nominalTileWidthMeters(radius, level);
+      const double width = nominalTileWidthMeters(radius, level, scheme);
       heights.minMeters = random.between(-0.1, 0.1) * radius;
       heights.maxMeters = heights.minMeters + 0.1 * width * random.unit();
     }
   }
+  if (scheme == Scheme::Ico) return Case{randomTriangle(random, level), radius, heights};
   const int face = static_cast<int>(random.below(6));
   const std::uint32_t column = index();
   return Case{FacePath::cubeTile(face, level, column, index()), radius, heights};
 }
 
 glm::dvec3 samplePoint(Random& random, const Case& c) {
-  const int grid = 20;
-  const auto offset = [&]() -> std::uint64_t {
-    const std::uint64_t kind = random.below(4);
-    return kind == 0 ? 0 : kind == 1 ? (1u << grid) : random.below((1u << grid) + 1);
-  };
-  const std::uint64_t column = (std::uint64_t{c.path.column()} << grid) + offset();
-  const std::uint64_t row = (std::uint64_t{c.path.row()} << grid) + offset();
+  const glm::dvec3 direction = randomDirection(random, c.path);
   const std::uint64_t kind = random.below(3);
   const double height = kind == 0   ? c.heights.minMeters
                         : kind == 1 ? c.heights.maxMeters
                                     : random.between(c.heights.minMeters, c.heights.maxMeters);
-  const glm::dvec3 p = cubeGridDirection(c.path.face(), c.path.level() + grid, column, row) * (c.radius + height);
+  const glm::dvec3 p = direction * (c.radius + height);
   if (random.below(2)) return p;
-  const int exponent = stepExponent(c.radius, c.path.level());
+  const int exponent = stepExponent(c.radius, c.path.level(), c.path.scheme());
   return latticePosition(roundToLattice(p, exponent), exponent);
 }
 

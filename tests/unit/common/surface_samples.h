@@ -43,8 +43,8 @@ struct Case {
   HeightRange heights;
 };
 
-/// Tiles anywhere, at a face's centre, and at cube corners, of bodies from an asteroid to the Sun.
-Case randomCase(Random& random, int level);
+/// Tiles anywhere, at a face's centre, and at its corners, of bodies from an asteroid to the Sun.
+Case randomCase(Random& random, int level, Scheme scheme = Scheme::Cube);
 
 /// A surface point of the tile: grid corners and edges often, the inside too, at the lowest, the highest or any height,
 /// and half of the time rounded to the level's lattice, as a vertex is.
