@@ -75,6 +75,7 @@ DrawnThere drawnAt(const DrawnCut& cut, const FacePath& path) {
 TileMorph morphOf(const DrawnCut& cut, const FacePath& path) {
   TileMorph morph;
   morph.own = cut.own(path);
+  morph.sides.fill(morph.own);  // those that a triangle lacks never differ
   const int edges = edgeCount(path.scheme());
   for (int edge = 0; edge < edges; ++edge) {
     Around around;

@@ -26,14 +26,15 @@ inline constexpr double kMoonRadiusMeters = 1'737'400.0;
 inline Body testMoon(std::uint64_t seed = 1969) { return testBody(FieldKind::Lunar, kMoonRadiusMeters, seed); }
 
 /// The Moon as selection sees it, with errors of 0.4 cells of 64, as the lunar field's are.
-inline SelectionBody selectionMoon(int maxLevel, const HeightRange& heights) {
+inline SelectionBody selectionMoon(int maxLevel, const HeightRange& heights, Scheme scheme = Scheme::Cube) {
   SelectionBody body;
+  body.scheme = scheme;
   body.radiusMeters = kMoonRadiusMeters;
   body.maxLevel = maxLevel;
   body.heights = heights;
-  body.occluderRadiusMeters = lowestSurfaceRadiusMeters(kMoonRadiusMeters, heights.minMeters, 64);
+  body.occluderRadiusMeters = lowestSurfaceRadiusMeters(kMoonRadiusMeters, heights.minMeters, 64, scheme);
   for (int level = 0; level <= maxLevel; ++level)
-    body.geometricErrorMeters.push_back(0.4 / 64 * nominalTileWidthMeters(kMoonRadiusMeters, level));
+    body.geometricErrorMeters.push_back(0.4 / 64 * nominalTileWidthMeters(kMoonRadiusMeters, level, scheme));
   return body;
 }
 

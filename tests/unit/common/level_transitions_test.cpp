@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <iostream>
@@ -15,7 +16,9 @@
 #include <unordered_map>
 
 #include "common/tiling/cube_sphere.h"
+#include "common/tiling/ico_sphere.h"
 #include "common/tiling/lattice.h"
+#include "common/tiling/triangle_tile.h"
 #include "common/view/tile_selection.h"
 #include "tests/support/moon_body.h"
 
@@ -26,26 +29,28 @@ constexpr double kMoon = kMoonRadiusMeters;
 constexpr double kPi = std::numbers::pi;
 constexpr HeightRange kHeights{-3000, 3000};
 
-SelectionBody moon() { return selectionMoon(20, kHeights); }
+SelectionBody moon(Scheme scheme) { return selectionMoon(20, kHeights, scheme); }
 
 HeightRange heightsOf(const FacePath& path) {
-  const double reach = std::min(3000.0, 0.05 * nominalTileWidthMeters(kMoon, path.level()));
+  const double reach = std::min(3000.0, 0.05 * nominalTileWidthMeters(kMoon, path.level(), path.scheme()));
   return {-reach, reach};
 }
 
 /// A client on a slow line: so many tiles a frame come, coarsest first.
 class LateTiles {
  public:
-  LateTiles() {
-    for (int face = 0; face < 6; ++face) add(FacePath::wholeFace(Scheme::Cube, face));
+  explicit LateTiles(Scheme scheme) {
+    for (int face = 0; face < faceCount(scheme); ++face) add(FacePath::wholeFace(scheme, face));
   }
   void add(const FacePath& path) { tiles_[path] = ResidentTile{heightsOf(path), heightsOf(path)}; }
-  void load(const std::vector<WantedTile>& wanted, int count) {
-    for (const WantedTile& tile : wanted) {
-      if (tiles_.contains(tile.path)) continue;
-      if (count-- == 0) return;
-      add(tile.path);
-    }
+  /// What is in the picture before what lies beside it, as the viewer asks.
+  void load(const TileSelection& picture, const TileSelection& beside, int count) {
+    for (const auto* wanted : {&picture.wanted, &beside.wanted})
+      for (const WantedTile& tile : *wanted) {
+        if (tiles_.contains(tile.path)) continue;
+        if (count-- == 0) return;
+        add(tile.path);
+      }
   }
   ResidentLookup lookup() const {
     return [this](const FacePath& path) {
@@ -64,43 +69,75 @@ class LateTiles {
 /// A few vertices of a tile: its corners, the middles of its edges, its middle; where each is, and how far out that is
 /// in levels.
 using Place = std::array<std::int64_t, 3>;
-constexpr int kGrid = 4;  // vertices 0 .. 4 along an edge
+constexpr int kGridLevels = 2, kGrid = 1 << kGridLevels;  // vertices 0 .. 4 along an edge
 
-Place placeOf(const FacePath& path, int i, int j) {
-  const double u = std::ldexp(path.column() + i / double{kGrid}, 1 - path.level()) - 1;
-  const double v = std::ldexp(path.row() + j / double{kGrid}, 1 - path.level()) - 1;
-  const FaceAxes& axes = cubeFaceAxes(path.face());
-  const glm::dvec3 point = axes.normal + axes.u * u + axes.v * v;
-  return {std::llround(point.x * 0x1p40), std::llround(point.y * 0x1p40), std::llround(point.z * 0x1p40)};
+/// Tiles that share a vertex have the same direction for it, to the bit.
+Place placeOf(const glm::dvec3& direction) {
+  return {std::bit_cast<std::int64_t>(direction.x), std::bit_cast<std::int64_t>(direction.y),
+          std::bit_cast<std::int64_t>(direction.z)};
+}
+glm::dvec3 directionOf(const Place& place) {
+  return {std::bit_cast<double>(place[0]), std::bit_cast<double>(place[1]), std::bit_cast<double>(place[2])};
 }
 
-double morphAt(const TileMorph& morph, int i, int j) {
-  const bool left = i == 0, right = i == kGrid, low = j == 0, high = j == kGrid;
-  const auto side = [&](Side s) { return static_cast<double>(morph.sides[static_cast<std::size_t>(s)]); };
-  if (left && low) return side(Side::UMinVMin);
-  if (right && low) return side(Side::UMaxVMin);
-  if (left && high) return side(Side::UMinVMax);
-  if (right && high) return side(Side::UMaxVMax);
-  if (left) return side(Side::UMin);
-  if (right) return side(Side::UMax);
-  if (low) return side(Side::VMin);
-  if (high) return side(Side::VMax);
-  return static_cast<double>(morph.own);
+/// A vertex, how far it is drawn towards the parent's, and whether it is drawn at all.
+struct Vertex {
+  Place place;
+  double morph;
+  bool drawn;
+};
+
+bool isCoarser(const TileMorph& morph, int edge) { return ((morph.coarserEdges >> edge) & 1) != 0; }
+double sideOf(const TileMorph& morph, int side) {
+  return static_cast<double>(morph.sides[static_cast<std::size_t>(side)]);
+}
+
+Vertex squareVertex(const DrawnTile& tile, int i, int j) {
+  const FacePath& path = tile.path;
+  const glm::dvec3 direction = cubeGridDirection(path.face(), path.level() + kGridLevels,
+                                                 std::uint64_t{path.column()} * kGrid + static_cast<unsigned>(i),
+                                                 std::uint64_t{path.row()} * kGrid + static_cast<unsigned>(j));
+  // The odd vertices of an edge beside a coarser tile are not drawn.
+  bool drawn = true;
+  const auto along = [&](bool isOn, Side edge, int k) {
+    drawn = drawn && !(isOn && k % 2 == 1 && isCoarser(tile.morph, static_cast<int>(edge)));
+  };
+  along(i == 0, Side::UMin, j);
+  along(i == kGrid, Side::UMax, j);
+  along(j == 0, Side::VMin, i);
+  along(j == kGrid, Side::VMax, i);
+  const float morph = morphAt(morphByPlace(tile.morph), kGrid + 1, i, j);
+  return {placeOf(direction), static_cast<double>(morph), drawn};
+}
+
+Vertex triangleVertex(const DrawnTile& tile, int i, int j) {
+  const FaceWeights weights = gridVertexWeights(triangleTile(tile.path), kGrid, {i, j});
+  const glm::dvec3 direction = icoGridDirection(kIcoMap, tile.path.face(), tile.path.level() + kGridLevels, weights);
+  const std::array<int, 3> towards{kGrid - i - j, i, j};  // each corner
+  Vertex vertex{placeOf(direction), static_cast<double>(tile.morph.own), true};
+  for (int k = 0; k < 3; ++k) {
+    const auto next = static_cast<std::size_t>((k + 1) % 3);
+    if (towards[static_cast<std::size_t>(k)] == 0) {  // on the edge opposite corner k
+      vertex.morph = sideOf(tile.morph, k);
+      if (towards[next] % 2 == 1 && isCoarser(tile.morph, k)) vertex.drawn = false;
+    }
+  }
+  for (int k = 0; k < 3; ++k)
+    if (towards[static_cast<std::size_t>(k)] == kGrid) vertex.morph = sideOf(tile.morph, kMostEdges + k);
+  return vertex;
 }
 
 /// The level of every vertex that is drawn; NaN where two tiles do not agree.
 std::map<Place, double> levelsOf(const std::vector<DrawnTile>& drawn) {
   std::map<Place, double> levels;
   for (const DrawnTile& tile : drawn) {
+    const bool square = tile.path.scheme() == Scheme::Cube;
     for (int j = 0; j <= kGrid; ++j) {
-      for (int i = 0; i <= kGrid; ++i) {
-        // The odd vertices of an edge beside a coarser tile are not drawn.
-        const auto bit = [&](Side s) { return (tile.morph.coarserEdges >> static_cast<int>(s)) & 1; };
-        if ((j % 2 == 1 && ((i == 0 && bit(Side::UMin)) || (i == kGrid && bit(Side::UMax)))) ||
-            (i % 2 == 1 && ((j == 0 && bit(Side::VMin)) || (j == kGrid && bit(Side::VMax)))))
-          continue;
-        const double level = tile.path.level() - morphAt(tile.morph, i, j);
-        const auto [at, isNew] = levels.try_emplace(placeOf(tile.path, i, j), level);
+      for (int i = 0; i <= (square ? kGrid : kGrid - j); ++i) {
+        const Vertex vertex = square ? squareVertex(tile, i, j) : triangleVertex(tile, i, j);
+        if (!vertex.drawn) continue;
+        const double level = tile.path.level() - vertex.morph;
+        const auto [at, isNew] = levels.try_emplace(vertex.place, level);
         if (!isNew && at->second != level) at->second = std::nan("");
       }
     }
@@ -115,8 +152,7 @@ std::size_t disagreements(const std::vector<DrawnTile>& drawn) {
 }
 
 bool isInView(const Place& place, const Camera& camera) {
-  const glm::dvec3 cube(place[0], place[1], place[2]);
-  const glm::dvec3 ground = cube * (kMoon / std::sqrt(glm::dot(cube, cube)));
+  const glm::dvec3 ground = directionOf(place) * kMoon;
   const glm::dvec3 away = ground - camera.positionBody;
   const double ahead = -glm::dot(away, camera.backward), reach = 0.5 * camera.heightPixels / pixelsPerRadian(camera);
   return ahead > 0 && std::fabs(glm::dot(away, camera.up)) < reach * ahead &&
@@ -146,9 +182,9 @@ struct FlightResult {
   bool settled = false;
 };
 
-FlightResult fly(ViewPose (*pose)(double), int frames, int tilesPerFrame, bool morph) {
-  const SelectionBody body = moon();
-  LateTiles tiles;
+FlightResult fly(Scheme scheme, ViewPose (*pose)(double), int frames, int tilesPerFrame, bool morph) {
+  const SelectionBody body = moon(scheme);
+  LateTiles tiles(scheme);
   LevelTransitions transitions({.secondsPerLevel = 0.3, .morph = morph});
   const auto canMorph = [&](const FacePath& path) { return tiles.canMorph(path); };
   FlightResult result;
@@ -165,7 +201,7 @@ FlightResult fly(ViewPose (*pose)(double), int frames, int tilesPerFrame, bool m
     result.movedFrames += jumped > 0 ? 1u : 0u;
     drawn = transitions.advance(selection.draw, 1.0 / 30, canMorph, mayBeSeen);
     result.disagreements += disagreements(changed) + disagreements(drawn);
-    tiles.load(selection.wanted, tilesPerFrame);
+    tiles.load(selection, selectTiles(widened(camera, kShareAhead), body, tiles.lookup(), {}), tilesPerFrame);
     if (frame >= frames && selection.complete && transitions.settled()) {
       result.settled = true;
       break;
@@ -182,20 +218,23 @@ void print(const char* name, const FlightResult& result) {
             << result.disagreements << " disagreements\n";
 }
 
-class LevelTransitionsFlight : public testing::TestWithParam<std::tuple<ViewPose (*)(double), int>> {};
+class LevelTransitionsFlight : public testing::TestWithParam<std::tuple<Scheme, ViewPose (*)(double), int>> {};
 
 TEST_P(LevelTransitionsFlight, IsClosedAndMovesNoVertexWhenTheDrawnSetChanges) {
-  const auto [pose, tilesPerFrame] = GetParam();
-  const FlightResult result = fly(pose, 240, tilesPerFrame, true), control = fly(pose, 240, tilesPerFrame, false);
+  const auto [scheme, pose, tilesPerFrame] = GetParam();
+  const FlightResult result = fly(scheme, pose, 240, tilesPerFrame, true);
+  const FlightResult control = fly(scheme, pose, 240, tilesPerFrame, false);
   print("morph", result);
   print("control, without", control);
   EXPECT_TRUE(result.settled);
   EXPECT_EQ(result.disagreements, 0u);
   EXPECT_EQ(result.counts.jumps, 0u);
-  // Where a coarse tile comes in beside finer ones a vertex may move in the very rim of the view.
-  EXPECT_LE(result.moved, 3u);
+  // Where a coarse tile comes in beside finer ones vertices may move in the very rim of the view; how little of that is
+  // seen the pop meter says.
+  EXPECT_LE(result.moved, control.moved / 10);
+  EXPECT_LE(result.movedFrames, 8u);
   EXPECT_GT(result.counts.splits, 20u);
-  EXPECT_GT(control.moved, result.moved);
+  EXPECT_GT(control.moved, 300u);
   EXPECT_EQ(control.disagreements, 0u);
 }
 
@@ -217,7 +256,8 @@ TEST(LevelTransitions, WhatComesIntoViewOfATileThatItsChildrenStillDrawIsDrawnAt
 }
 
 INSTANTIATE_TEST_SUITE_P(Flights, LevelTransitionsFlight,
-                         testing::Combine(testing::Values(descentPose, groundPose), testing::Values(2, 1000)));
+                         testing::Combine(testing::Values(Scheme::Cube, Scheme::Ico),
+                                          testing::Values(descentPose, groundPose), testing::Values(2, 1000)));
 
 }  // namespace
 }  // namespace terrane
