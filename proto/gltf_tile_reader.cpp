@@ -32,10 +32,8 @@ HeightRange readHeights(const JsonCursor& at) {
   return heights;
 }
 
-/// Grid vertices and skirt vertices of a square tile.
-std::size_t vertexLimit(int cellsPerEdge) {
-  const auto edge = static_cast<std::size_t>(cellsPerEdge) + 1;
-  return edge * edge + 4 * edge;
+std::size_t vertexLimit(Scheme scheme, int cellsPerEdge) {
+  return gridVertexCount(scheme, cellsPerEdge) + skirtVertexCount(scheme, cellsPerEdge);
 }
 
 FacePath readPath(const JsonCursor& extras) {
@@ -80,7 +78,8 @@ TileMetadata readMetadata(const JsonCursor& extras) {
   m.horizonPoint = horizon ? readVector(*horizon) : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
   const JsonCursor cells = extras.member("cellsPerEdge");
   m.cellsPerEdge = static_cast<int>(cells.integer(1, 1024));
-  if (vertexLimit(m.cellsPerEdge) > kMaxGridIndices) cells.fail("more than 16-bit grid indices number");
+  if (vertexLimit(m.path.scheme(), m.cellsPerEdge) > kMaxGridIndices)
+    cells.fail("more than 16-bit grid indices number");
   m.skirtMeters = static_cast<float>(extras.member("skirt").number(0, kMaxMeters));
   return m;
 }
@@ -185,7 +184,7 @@ Result<Tile> decodeChunks(const GlbChunks& chunks, const DecodeLimits& limits) {
     return refuse("other vertices than the accessor");
   if (static_cast<std::int64_t>(mesh->triangles.size()) != primitive.indexCount)
     return refuse("other indices than the accessor");
-  const std::size_t gridLimit = vertexLimit(tile.metadata.cellsPerEdge);
+  const std::size_t gridLimit = vertexLimit(tile.metadata.path.scheme(), tile.metadata.cellsPerEdge);
   for (const std::uint16_t index : mesh->gridIndices) {
     if (index >= gridLimit) return refuse("a grid index beyond the grid");
   }

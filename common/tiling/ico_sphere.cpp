@@ -1,5 +1,6 @@
 #include "common/tiling/ico_sphere.h"
 
+#include <bit>
 #include <cmath>
 
 #include "common/numerics/strict_math.h"
@@ -225,6 +226,31 @@ void icoGridDirections(IcoMap map, const FacePath& path, int cells, const Direct
   } else {
     bisectedDirections(path, cells, out);
   }
+}
+
+void icoEdgeDirections(IcoMap map, const FacePath& path, int edge, int cells, const DirectionSpans& out) noexcept {
+  const auto set = [&](int k, const glm::dvec3& direction) {
+    const auto at = static_cast<std::size_t>(k);
+    out.x[at] = direction.x;
+    out.y[at] = direction.y;
+    out.z[at] = direction.z;
+  };
+  if (map == IcoMap::Gnomonic) {
+    const TriangleTile tile = triangleTile(path);
+    const int gridLevel = path.level() + std::countr_zero(static_cast<unsigned>(cells));
+    for (int k = 0; k <= cells; ++k)
+      set(k, icoGridDirection(map, path.face(), gridLevel, gridVertexWeights(tile, cells, edgeVertex(cells, edge, k))));
+    return;
+  }
+  const auto get = [&](int k) {
+    const auto at = static_cast<std::size_t>(k);
+    return glm::dvec3(out.x[at], out.y[at], out.z[at]);
+  };
+  const CornerDirections corners = icoCornerDirections(map, path);
+  set(0, corners[static_cast<std::size_t>((edge + 1) % kTriangleCorners)]);
+  set(cells, corners[static_cast<std::size_t>((edge + 2) % kTriangleCorners)]);
+  for (int half = cells / 2; half > 0; half /= 2)
+    for (int k = half; k < cells; k += 2 * half) set(k, middle(get(k - half), get(k + half)));
 }
 
 FacePath icoTileAt(IcoMap map, const glm::dvec3& direction, int level) noexcept {

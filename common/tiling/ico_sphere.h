@@ -28,6 +28,9 @@ enum class IcoMap : std::uint8_t { Bisected, Gnomonic };
 /// Tiles are served by this one: its cells are more alike.
 inline constexpr IcoMap kIcoMap = IcoMap::Bisected;
 
+/// The longest edge of a tile, in nominal widths of its level (atan 2 / 2^level), by either map (ico_shapes_test).
+inline constexpr double kIcoLongestEdge = 1.2;
+
 /// How far a component of a computed direction may be from the exact map's; proofs in ico_sphere.cpp
 /// (ico_sphere_test). At grid level 36, of 64 cells at level 30: 9.1e-15 and 1.2e-15 of the radius, where the lattice's
 /// step is 3.1e-14 or more.
@@ -49,6 +52,10 @@ struct DirectionSpans {
 /// The unit directions of all vertices of a tile's grid: bit for bit those of icoGridDirection, at the cost of one
 /// square root each. Precondition: path is of the scheme Ico.
 void icoGridDirections(IcoMap map, const FacePath& path, int cells, const DirectionSpans& out) noexcept;
+
+/// The unit directions along edge 0, 1 or 2 of such a grid, in the order of edgeVertex; each of cells + 1. The same
+/// bits again, without the grid. Preconditions: path is of the scheme Ico, cells a power of two.
+void icoEdgeDirections(IcoMap map, const FacePath& path, int edge, int cells, const DirectionSpans& out) noexcept;
 
 /// The tile of a level, at most FacePath::kMaxLevel, that holds a direction: any finite non-zero vector of any length.
 /// Faces as icosahedronFaceAt has them; below, a direction on the border between a corner child and the centre child is

@@ -224,8 +224,8 @@ TileBounds boundsOver(const FacePath& footprintPath, double step, double radiusM
   const double rHigh = radiusMeters + heights.maxMeters + step;
   if (!(rLow > 64.0 * step)) return wholeBodyBounds(rHigh);
 
-  const Footprint footprint =
-      footprintOf(footprintPath, tangentPlaneMargin((1.0 + kSkirtCornerFlareSteps) * step, rLow));
+  const Footprint footprint = footprintOf(
+      footprintPath, tangentPlaneMargin((1.0 + skirtCornerFlareSteps(footprintPath.scheme())) * step, rLow));
   TileBounds bounds;
   bounds.hull = hullOf(footprint, rLow, rHigh);
   bounds.box = boxOf(footprint, rLow, rHigh);

@@ -32,9 +32,12 @@ struct OrientedBox {
 /// The lower ends of skirts lean outwards by this many lattice steps, so that the hairline which rasterisation may
 /// leave along a border of two levels is closed also when one looks straight down it. Bounds make room for them.
 inline constexpr double kSkirtFlareSteps = 2.0;
-/// At a tile's corners, where two skirts share their lowest point, so that no wedge opens between them: both lean that
-/// far out of their planes there, which is up to twice as far along the mitre (edges meet at 60 degrees and more).
-inline constexpr double kSkirtCornerFlareSteps = 2.0 * kSkirtFlareSteps;
+/// At a tile's corners two skirts share their lowest point, so that no wedge opens between them: both lean that far out
+/// of their planes there, which is up to this far along the mitre. Edges of a cube tile meet at 60 degrees and more,
+/// those of an ico tile at 54 (ico_shapes_test): 1 / sin 27 degrees = 2.203.
+constexpr double skirtCornerFlareSteps(Scheme scheme) noexcept {
+  return (scheme == Scheme::Cube ? 2.0 : 2.203) * kSkirtFlareSteps;
+}
 
 struct TileBounds {
   /// The tile lies within the convex hull of these: corners (u, v) = 00 10 01 11 of the inner face, then of the outer

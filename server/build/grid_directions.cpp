@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "common/numerics/strict_math.h"
 #include "common/tiling/cube_sphere.h"
+#include "common/tiling/ico_sphere.h"
 
 namespace terrane {
 namespace {
@@ -26,9 +28,20 @@ int levelsOf(int cellsPerEdge) noexcept {
   return levels;
 }
 
-}  // namespace
+void resize(GridDirections& directions, std::size_t count) {
+  directions.x.resize(count);
+  directions.y.resize(count);
+  directions.z.resize(count);
+}
 
-void gridDirections(const FacePath& path, int cellsPerEdge, GridDirections& out) {
+/// The last `count` of them.
+DirectionSpans lastOf(GridDirections& directions, std::size_t count) {
+  return {std::span(directions.x).last(count), std::span(directions.y).last(count),
+          std::span(directions.z).last(count)};
+}
+
+/// Two tangents for each line of the grid serve all its vertices.
+void cubeGridDirections(const FacePath& path, int cellsPerEdge, GridDirections& out) {
   thread_local std::vector<double> tangentsU, tangentsV;
   const int gridLevel = path.level() + levelsOf(cellsPerEdge);
   const auto cells = static_cast<std::uint64_t>(cellsPerEdge);
@@ -36,9 +49,7 @@ void gridDirections(const FacePath& path, int cellsPerEdge, GridDirections& out)
   lineTangents(path.row() * cells, cellsPerEdge, gridLevel, tangentsV);
 
   const std::size_t side = tangentsU.size();
-  out.x.resize(side * side);
-  out.y.resize(side * side);
-  out.z.resize(side * side);
+  resize(out, side * side);
   const FaceAxes axes = cubeFaceAxes(path.face());
   const double* alongU = tangentsU.data();
   for (std::size_t j = 0; j < side; ++j) {
@@ -57,6 +68,37 @@ void gridDirections(const FacePath& path, int cellsPerEdge, GridDirections& out)
       z[i] = pz / norm;
     }
   }
+}
+
+/// VMin towards +u, UMax towards +v, VMax towards -u, UMin towards -v.
+void appendCubeEdge(const FacePath& path, int skirtEdge, int cellsPerEdge, GridDirections& out) {
+  const int gridLevel = path.level() + levelsOf(cellsPerEdge);
+  const auto last = static_cast<std::uint64_t>(cellsPerEdge);
+  for (std::uint64_t k = 0; k <= last; ++k) {
+    const std::uint64_t u = skirtEdge == 0 ? k : skirtEdge == 1 ? last : skirtEdge == 2 ? last - k : 0;
+    const std::uint64_t v = skirtEdge == 0 ? 0 : skirtEdge == 1 ? k : skirtEdge == 2 ? last : last - k;
+    const glm::dvec3 direction =
+        cubeGridDirection(path.face(), gridLevel, path.column() * last + u, path.row() * last + v);
+    out.x.push_back(direction.x);
+    out.y.push_back(direction.y);
+    out.z.push_back(direction.z);
+  }
+}
+
+}  // namespace
+
+void gridDirections(const FacePath& path, int cellsPerEdge, GridDirections& out) {
+  if (path.scheme() == Scheme::Cube) return cubeGridDirections(path, cellsPerEdge, out);
+  const auto count = static_cast<std::size_t>(triangleGridSize(cellsPerEdge));
+  resize(out, count);
+  icoGridDirections(kIcoMap, path, cellsPerEdge, lastOf(out, count));
+}
+
+void appendEdgeDirections(const FacePath& path, int skirtEdge, int cellsPerEdge, GridDirections& out) {
+  if (path.scheme() == Scheme::Cube) return appendCubeEdge(path, skirtEdge, cellsPerEdge, out);
+  const auto count = static_cast<std::size_t>(cellsPerEdge) + 1;
+  resize(out, out.x.size() + count);
+  icoEdgeDirections(kIcoMap, path, skirtEdge, cellsPerEdge, lastOf(out, count));
 }
 
 }  // namespace terrane

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/numerics/strict_math.h"
+#include "common/tiling/ico_sphere.h"
 #include "common/tiling/lattice.h"
 
 namespace terrane {
@@ -12,9 +13,8 @@ namespace {
 /// holds the lunar field to it). It only enters the sag below, in second order.
 constexpr double kSteepestSlope = 5.0;
 
-double cellMeters(double radiusMeters, int level, int cellsPerEdge) noexcept {
-  return nominalTileWidthMeters(radiusMeters, level) / cellsPerEdge;
-}
+/// Of a cell's edge, in its nominal width.
+double longestEdge(Scheme scheme) noexcept { return scheme == Scheme::Cube ? 1.0 : kIcoLongestEdge; }
 
 /// How far a straight edge may lie below the surface that interpolates its ends' heights over a sphere: c^2 / 8 r for
 /// level ends, and dr^2 / 4 r more where they differ by dr (in the middle direction a chord is at the harmonic mean of
@@ -26,25 +26,29 @@ double sagMeters(double cell, double lowestRadius, double heightSpan) noexcept {
 
 }  // namespace
 
-double skirtMarginMeters(double radiusMeters, int level) noexcept {
-  return (3.0 * 0.8660254037844387 + 2.0 * kSkirtFlareSteps) * stepMeters(stepExponent(radiusMeters, level));
+double skirtMarginMeters(double radiusMeters, int level, Scheme scheme) noexcept {
+  return (3.0 * 0.8660254037844387 + 2.0 * kSkirtFlareSteps) * stepMeters(stepExponent(radiusMeters, level, scheme));
 }
 
-std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, int cellsPerEdge,
-                                           int maxLevel) {
-  const double finest = 2.0 * cellMeters(radiusMeters, maxLevel, cellsPerEdge);
+std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, Scheme scheme,
+                                           int cellsPerEdge, int maxLevel) {
+  const auto cellMeters = [&](int level) { return nominalTileWidthMeters(radiusMeters, level, scheme) / cellsPerEdge; };
+  const double finest = 2.0 * cellMeters(maxLevel);
   const HeightRange heights = field.heightRange();
   const double span = heights.maxMeters - heights.minMeters;
   std::vector<LevelAccuracy> levels;
   for (int level = 0; level <= maxLevel; ++level) {
-    const double cell = cellMeters(radiusMeters, level, cellsPerEdge);
+    const double cell = cellMeters(level);
     LevelAccuracy accuracy;
     accuracy.minWavelengthMeters = 2.0 * cell;
     accuracy.geometricErrorMeters = kErrorPerCell * cell;
-    accuracy.skirtSlackMeters =
-        skirtMarginMeters(radiusMeters, level) + sagMeters(cell, radiusMeters + heights.minMeters, span);
+    accuracy.skirtSlackMeters = skirtMarginMeters(radiusMeters, level, scheme) +
+                                sagMeters(longestEdge(scheme) * cell, radiusMeters + heights.minMeters, span);
     if (level < maxLevel) {
-      // No two heights differ by more than the field's whole range: at the coarsest levels that is the better bound.
+      // The bound for square cells holds for triangles too: both rest on the mean square distance of a point from the
+      // vertices it lies between, which is the half diagonal's at most, s^2 / 2, and the squared circumradius of an
+      // acute triangle, (1.2 s)^2 / 3. No two heights differ by more than the field's whole range: at the coarsest
+      // levels that is the better bound.
       accuracy.subtreeSlackMeters = std::min(
           span, field.omittedAmplitudeMeters(2.0 * cell, finest) + field.interpolationErrorMeters(2.0 * cell, cell));
     }

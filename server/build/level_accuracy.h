@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "common/tiling/face_path.h"
 #include "server/fields/height_field.h"
 
 namespace terrane {
@@ -24,11 +25,11 @@ struct LevelAccuracy {
 inline constexpr double kErrorPerCell = 0.4;
 
 /// Levels 0 .. maxLevel.
-std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, int cellsPerEdge,
-                                           int maxLevel);
+std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, Scheme scheme,
+                                           int cellsPerEdge, int maxLevel);
 
 /// How far a skirt hangs below the lowest of the edges that may meet it, so that the lattice's rounding opens nothing:
 /// half a step in each axis for a vertex of the tile, twice that for one of a coarser neighbour.
-double skirtMarginMeters(double radiusMeters, int level) noexcept;
+double skirtMarginMeters(double radiusMeters, int level, Scheme scheme) noexcept;
 
 }  // namespace terrane

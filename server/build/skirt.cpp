@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "common/numerics/strict_math.h"
-#include "common/tiling/cube_sphere.h"
 
 namespace terrane {
 namespace {
@@ -25,7 +24,11 @@ double chordRadius(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& d
 class SkirtBuilder {
  public:
   SkirtBuilder(const SkirtInput& tile, SkirtScratch& scratch, std::vector<double>& lowest)
-      : tile_(tile), scratch_(scratch), lowest_(lowest), cells_(static_cast<std::size_t>(tile.topology.cellsPerEdge)) {}
+      : tile_(tile),
+        scratch_(scratch),
+        lowest_(lowest),
+        edges_(tile.topology.edgeCount()),
+        cells_(static_cast<std::size_t>(tile.topology.cellsPerEdge)) {}
 
   void run() {
     lowest_.clear();
@@ -33,17 +36,15 @@ class SkirtBuilder {
     if (tile_.path.level() > 0) lowerToCoarserEdges();
     if (static_cast<std::size_t>(tile_.path.level()) + 1 < tile_.levels.size()) lowerToFinerEdges();
     shareCorners();
-    const double margin = skirtMarginMeters(tile_.radiusMeters, tile_.path.level());
+    const double margin = skirtMarginMeters(tile_.radiusMeters, tile_.path.level(), tile_.path.scheme());
     for (double& height : lowest_) height -= margin;
   }
 
  private:
-  static constexpr std::size_t kEdges = 4;
-
   /// Two edges' skirts end in one point below a corner.
   void shareCorners() {
-    for (std::size_t edge = 0; edge < kEdges; ++edge) {
-      double &end = lowest(edge, cells_), &start = lowest((edge + 1) % kEdges, 0);
+    for (std::size_t edge = 0; edge < edges_; ++edge) {
+      double &end = lowest(edge, cells_), &start = lowest((edge + 1) % edges_, 0);
       end = start = std::min(end, start);
     }
   }
@@ -59,7 +60,7 @@ class SkirtBuilder {
   void evaluate(std::size_t samplesPerEdge, int level) {
     const GridDirections& d = scratch_.directions;
     scratch_.heightMeters.clear();
-    for (std::size_t at = 0; at < kEdges * samplesPerEdge; at += samplesPerEdge) {
+    for (std::size_t at = 0; at < edges_ * samplesPerEdge; at += samplesPerEdge) {
       tile_.field.evaluate({d.x.data() + at, d.y.data() + at, d.z.data() + at, 1, samplesPerEdge},
                            tile_.levels[static_cast<std::size_t>(level)].minWavelengthMeters, scratch_.samples);
       scratch_.heightMeters.insert(scratch_.heightMeters.end(), scratch_.samples.heightMeters.begin(),
@@ -81,11 +82,11 @@ class SkirtBuilder {
   /// A coarser neighbour has every other vertex of this edge, and straight lines between.
   void lowerToCoarserEdges() {
     startDirections();
-    for (std::size_t edge = 0; edge < kEdges; ++edge)
+    for (std::size_t edge = 0; edge < edges_; ++edge)
       for (std::size_t k = 0; k <= cells_; k += 2) addDirection(anchorDirection(edge, k));
     const std::size_t perEdge = cells_ / 2 + 1;
     evaluate(perEdge, tile_.path.level() - 1);
-    for (std::size_t edge = 0; edge < kEdges; ++edge) {
+    for (std::size_t edge = 0; edge < edges_; ++edge) {
       const double* coarse = scratch_.heightMeters.data() + edge * perEdge;
       for (std::size_t k = 0; k <= cells_; k += 2) lower(edge, k, coarse[k / 2]);
       for (std::size_t k = 1; k < cells_; k += 2) {
@@ -99,11 +100,11 @@ class SkirtBuilder {
   /// A finer neighbour has a vertex at each of this edge's, and one between each two: both ends go below that one.
   void lowerToFinerEdges() {
     startDirections();
-    for (std::size_t edge = 0; edge < kEdges; ++edge)
-      for (std::size_t q = 0; q <= 2 * cells_; ++q) addDirection(finerDirection(edge, q));
+    for (std::size_t edge = 0; edge < edges_; ++edge)
+      appendEdgeDirections(tile_.path, static_cast<int>(edge), 2 * tile_.topology.cellsPerEdge, scratch_.directions);
     const std::size_t perEdge = 2 * cells_ + 1;
     evaluate(perEdge, tile_.path.level() + 1);
-    for (std::size_t edge = 0; edge < kEdges; ++edge) {
+    for (std::size_t edge = 0; edge < edges_; ++edge) {
       const double* fine = scratch_.heightMeters.data() + edge * perEdge;
       for (std::size_t q = 0; q < perEdge; ++q) {
         lower(edge, q / 2, fine[q]);
@@ -112,22 +113,12 @@ class SkirtBuilder {
     }
   }
 
-  /// Position q of 0 .. 2 cells along an edge, walked as the topology walks it.
-  glm::dvec3 finerDirection(std::size_t edge, std::size_t q) const {
-    const std::size_t last = 2 * cells_;
-    const std::size_t u = edge == 0 ? q : edge == 1 ? last : edge == 2 ? last - q : 0;
-    const std::size_t v = edge == 0 ? 0 : edge == 1 ? q : edge == 2 ? last : last - q;
-    int gridLevel = tile_.path.level() + 1;
-    for (std::size_t cells = 1; cells < cells_; cells *= 2) ++gridLevel;
-    return cubeGridDirection(tile_.path.face(), gridLevel, tile_.path.column() * last + u, tile_.path.row() * last + v);
-  }
-
   void lower(std::size_t edge, std::size_t k, double height) { lowest(edge, k) = std::min(lowest(edge, k), height); }
 
   const SkirtInput& tile_;
   SkirtScratch& scratch_;
   std::vector<double>& lowest_;
-  std::size_t cells_;
+  std::size_t edges_, cells_;
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace terrane {
 struct SkirtScratch {
   GridDirections directions;
   SurfaceSamples samples;
-  std::vector<double> heightMeters;  ///< of all four edges
+  std::vector<double> heightMeters;  ///< of all edges
 };
 
 struct SkirtInput {

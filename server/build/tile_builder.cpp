@@ -1,16 +1,15 @@
 #include "server/build/tile_builder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <mutex>
 #include <span>
 #include <utility>
 
 #include "common/numerics/strict_math.h"
-#include "common/tiling/cube_sphere.h"
 #include "proto/draco_template.h"
 #include "proto/gltf_tile.h"
+#include "server/build/edge_planes.h"
 #include "server/build/grid_directions.h"
 #include "server/build/level_accuracy.h"
 #include "server/build/skirt.h"
@@ -60,31 +59,6 @@ HeightRange rangeOf(const std::vector<double>& heights) {
   return {*lowest, *highest};
 }
 
-/// Unit outward normals of the great-circle planes through a tile's edges, in the order of the skirts: VMin, UMax,
-/// VMax, UMin.
-std::array<glm::dvec3, kEdgeCount> outwardNormals(const FacePath& path) {
-  const FaceAxes& axes = cubeFaceAxes(path.face());
-  const auto tangent = [&](std::uint32_t line) { return tanQuarterPi(std::ldexp(line, 1 - path.level()) - 1.0); };
-  const auto normal = [&](const glm::dvec3& along, double t, double sign) {
-    const glm::dvec3 n = along - axes.normal * t;
-    return n * (sign / std::sqrt((n.x * n.x + n.y * n.y) + n.z * n.z));
-  };
-  return {normal(axes.v, tangent(path.row()), -1.0), normal(axes.u, tangent(path.column() + 1), 1.0),
-          normal(axes.v, tangent(path.row() + 1), 1.0), normal(axes.u, tangent(path.column()), -1.0)};
-}
-
-/// How far skirt vertex k of an edge leans outwards, in units of the flare: along the edge's normal, or at the ends
-/// along the mitre with the next edge's.
-glm::dvec3 leanOf(const std::array<glm::dvec3, kEdgeCount>& outward, std::size_t edge, std::size_t k,
-                  std::size_t cells) {
-  if (k != 0 && k != cells) return outward[edge];
-  const glm::dvec3& other = outward[(edge + (k == 0 ? kEdgeCount - 1 : 1)) % kEdgeCount];
-  // In this order for both edges, so that they round alike.
-  const glm::dvec3 &first = k == 0 ? other : outward[edge], &second = k == 0 ? outward[edge] : other;
-  const double cosine = (first.x * second.x + first.y * second.y) + first.z * second.z;
-  return (first + second) * (1.0 / (1.0 + cosine));
-}
-
 /// Where the grid's vertices and the skirts below them fall on the lattice. Skirts lean outwards (kSkirtFlareSteps).
 void placeVertices(const FacePath& path, const BuildScratch& memory, const TileTopology& topology, double radiusMeters,
                    int exponent, std::vector<LatticePoint>& out) {
@@ -97,12 +71,12 @@ void placeVertices(const FacePath& path, const BuildScratch& memory, const TileT
   out.clear();
   for (std::size_t vertex = 0; vertex < heights.size(); ++vertex)
     out.push_back(roundToLattice(position(vertex, heights[vertex]), exponent));
-  const auto outward = outwardNormals(path);
+  const EdgeNormals outward(path);
   const double flare = kSkirtFlareSteps * stepMeters(exponent);
   const auto perEdge = static_cast<std::size_t>(topology.cellsPerEdge) + 1;
   for (std::size_t k = 0; k < topology.skirtAnchors.size(); ++k) {
     const glm::dvec3 below = position(topology.skirtAnchors[k], memory.skirtHeights[k]);
-    out.push_back(roundToLattice(below + leanOf(outward, k / perEdge, k % perEdge, perEdge - 1) * flare, exponent));
+    out.push_back(roundToLattice(below + outward.lean(k / perEdge, k % perEdge, perEdge - 1) * flare, exponent));
   }
 }
 
@@ -163,6 +137,7 @@ void copyToSkirts(const TileTopology& topology, std::vector<T>& values) {
 
 struct TileBuilder::State {
   Body body;
+  Scheme scheme = Scheme::Cube;
   WireSettings wire;
   std::unique_ptr<const HeightField> field;
   BodyInfo info;
@@ -180,30 +155,33 @@ struct TileBuilder::State {
 TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.body = std::move(body);
+  if (!state.body.schemes.empty()) state.scheme = state.body.schemes.front();
   state.wire = wire;
   state.field = makeHeightField(state.body, simd);
   state.fieldHeights = state.field->heightRange();
-  state.topology = makeTileTopology(wire.cellsPerEdge);
+  state.topology = makeTileTopology(state.scheme, wire.cellsPerEdge);
   const double radius = state.body.radiusMeters;
-  const int deepest = maxLevel(radius);
-  state.levels = levelAccuracies(*state.field, radius, wire.cellsPerEdge, deepest);
+  const int deepest = maxLevel(radius, state.scheme);
+  state.levels = levelAccuracies(*state.field, radius, state.scheme, wire.cellsPerEdge, deepest);
 
   state.info.name = state.body.name;
-  state.info.schemes = state.body.schemes;
+  state.info.schemes = {state.scheme};
   state.info.cellsPerEdge = wire.cellsPerEdge;
   SelectionBody& selection = state.info.selection;
-  selection.scheme = Scheme::Cube;
+  selection.scheme = state.scheme;
   selection.radiusMeters = radius;
   selection.maxLevel = deepest;
   selection.heights = {state.fieldHeights.minMeters - state.levels.front().skirtSlackMeters,
                        state.fieldHeights.maxMeters};
-  selection.occluderRadiusMeters = lowestSurfaceRadiusMeters(radius, state.fieldHeights.minMeters, wire.cellsPerEdge);
+  selection.occluderRadiusMeters =
+      lowestSurfaceRadiusMeters(radius, state.fieldHeights.minMeters, wire.cellsPerEdge, state.scheme);
   for (const LevelAccuracy& level : state.levels) selection.geometricErrorMeters.push_back(level.geometricErrorMeters);
 
-  if (const Result<Tile> model = buildMesh(FacePath::wholeFace(Scheme::Cube, 0)); model.has_value())
+  const FacePath first = FacePath::wholeFace(state.scheme, 0);
+  if (const Result<Tile> model = buildMesh(first); model.has_value())
     state.draco = DracoTemplate::learn(model->mesh, wire.draco);
 
-  const Result<BuiltTile> probe = build(FacePath::wholeFace(Scheme::Cube, 0));
+  const Result<BuiltTile> probe = build(first);
   state.info.revision =
       tileRevision(state.body, state.field->identity(), wire,
                    probe.has_value() ? std::span<const std::uint8_t>(probe->glb) : std::span<const std::uint8_t>());
@@ -216,8 +194,7 @@ const Body& TileBuilder::body() const noexcept { return state_->body; }
 const BodyInfo& TileBuilder::info() const noexcept { return state_->info; }
 
 Result<void> TileBuilder::State::checkPath(const FacePath& path) const {
-  if (path.scheme() != Scheme::Cube ||
-      std::find(body.schemes.begin(), body.schemes.end(), path.scheme()) == body.schemes.end())
+  if (path.scheme() != scheme)
     return makeError(ErrorKind::InvalidArgument, "scheme",
                      body.name + " has no tiles of the scheme " + std::string(schemeName(path.scheme())));
   if (path.level() > info.selection.maxLevel)
@@ -258,10 +235,14 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   const double radius = body.radiusMeters;
   const LevelAccuracy& accuracy = levels[static_cast<std::size_t>(path.level())];
   gridDirections(path, wire.cellsPerEdge, memory.directions);
+  // A triangle has half as many rows, and half a row, of its longest row's length.
   const auto side = static_cast<std::size_t>(wire.cellsPerEdge) + 1;
-  const SampleBatch batch{
-      memory.directions.x.data(),        memory.directions.y.data(), memory.directions.z.data(), side, side,
-      0.5 * accuracy.minWavelengthMeters};
+  const SampleBatch batch{memory.directions.x.data(),
+                          memory.directions.y.data(),
+                          memory.directions.z.data(),
+                          memory.directions.x.size() / side,
+                          side,
+                          0.5 * accuracy.minWavelengthMeters};
   field->evaluate(batch, accuracy.minWavelengthMeters, memory.samples);
   memory.skirt.samples.scratch = memory.samples.scratch;  // what was gathered around the tile serves its borders too
   skirtHeights({*field, levels, *topology, radius, path, memory.directions, memory.samples.heightMeters}, memory.skirt,
@@ -270,7 +251,7 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
 
   const auto meshStart = Clock::now();
   Tile tile;
-  tile.metadata.stepExponent = stepExponent(radius, path.level());
+  tile.metadata.stepExponent = stepExponent(radius, path.level(), scheme);
   placeVertices(path, memory, *topology, radius, tile.metadata.stepExponent, memory.lattice);
   if (!offsetsFromOrigin(memory.lattice, tile.metadata.origin, tile.mesh.offsets))
     return makeError(ErrorKind::TooLarge, "digits",

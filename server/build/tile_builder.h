@@ -1,7 +1,7 @@
 #pragma once
-// Builds the tiles of one body: grid directions -> field -> lattice -> mesh with skirts -> Draco -> GLB. A tile is a
-// pure function of (body, path, wire settings): no clock, no thread order. build is const and thread-safe; each thread
-// keeps its own scratch.
+// Builds the tiles of one body in the one scheme that it is served in: grid directions -> field -> lattice -> mesh with
+// skirts -> Draco -> GLB. A tile is a pure function of (body, path, wire settings): no clock, no thread order. build is
+// const and thread-safe; each thread keeps its own scratch.
 
 #include <chrono>
 #include <cstdint>
@@ -38,6 +38,7 @@ struct BuiltTile {
 
 class TileBuilder {
  public:
+  /// The scheme is the first of the body's, the cube if it names none.
   TileBuilder(Body body, WireSettings wire, SimdPath simd);
   ~TileBuilder();
   TileBuilder(TileBuilder&&) noexcept;

@@ -2,10 +2,14 @@
 
 #include <numeric>
 
+#include "common/tiling/tile_neighbours.h"
+#include "common/tiling/triangle_grid.h"
+#include "proto/tile_mesh.h"
+
 namespace terrane {
 namespace {
 
-void addGridTriangles(std::uint32_t cells, std::vector<std::uint32_t>& triangles) {
+void addSquareTriangles(std::uint32_t cells, std::vector<std::uint32_t>& triangles) {
   const std::uint32_t side = cells + 1;
   for (std::uint32_t j = 0; j < cells; ++j) {
     for (std::uint32_t i = 0; i < cells; ++i) {
@@ -15,7 +19,7 @@ void addGridTriangles(std::uint32_t cells, std::vector<std::uint32_t>& triangles
   }
 }
 
-std::vector<std::uint32_t> boundaryInSkirtOrder(std::uint32_t cells) {
+std::vector<std::uint32_t> squareBoundary(std::uint32_t cells) {
   const std::uint32_t side = cells + 1;
   std::vector<std::uint32_t> anchors;
   for (std::uint32_t k = 0; k < side; ++k) anchors.push_back(k);                         // VMin, towards +u
@@ -25,13 +29,30 @@ std::vector<std::uint32_t> boundaryInSkirtOrder(std::uint32_t cells) {
   return anchors;
 }
 
+/// Row by row; between each two triangles that lie as the tile does, one turned round.
+void addTriangularTriangles(int cells, std::vector<std::uint32_t>& triangles) {
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(triangleGridIndex(cells, {i, j})); };
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i + j < cells; ++i) {
+      triangles.insert(triangles.end(), {at(i, j), at(i + 1, j), at(i, j + 1)});
+      if (i + j + 1 < cells) triangles.insert(triangles.end(), {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+}
+
+std::vector<std::uint32_t> triangularBoundary(int cells) {
+  std::vector<std::uint32_t> anchors;
+  for (int edge = 0; edge < edgeCount(Scheme::Ico); ++edge)
+    for (int k = 0; k <= cells; ++k)
+      anchors.push_back(static_cast<std::uint32_t>(triangleGridIndex(cells, edgeVertex(cells, edge, k))));
+  return anchors;
+}
+
 /// A wall below each edge that faces away from the tile.
-void addSkirtTriangles(std::uint32_t cells, const std::vector<std::uint32_t>& anchors,
+void addSkirtTriangles(std::uint32_t cells, std::uint32_t firstSkirt, const std::vector<std::uint32_t>& anchors,
                        std::vector<std::uint32_t>& triangles) {
-  const std::uint32_t side = cells + 1, firstSkirt = side * side;
-  for (std::uint32_t edge = 0; edge < 4; ++edge) {
-    for (std::uint32_t k = 0; k < cells; ++k) {
-      const std::uint32_t at = edge * side + k;
+  for (std::uint32_t start = 0; start < anchors.size(); start += cells + 1) {
+    for (std::uint32_t at = start; at < start + cells; ++at) {
       const std::uint32_t top = anchors[at], nextTop = anchors[at + 1];
       const std::uint32_t bottom = firstSkirt + at, nextBottom = bottom + 1;
       triangles.insert(triangles.end(), {top, bottom, nextTop, nextTop, bottom, nextBottom});
@@ -41,14 +62,20 @@ void addSkirtTriangles(std::uint32_t cells, const std::vector<std::uint32_t>& an
 
 }  // namespace
 
-std::shared_ptr<const TileTopology> makeTileTopology(int cellsPerEdge) {
+std::shared_ptr<const TileTopology> makeTileTopology(Scheme scheme, int cellsPerEdge) {
   const auto cells = static_cast<std::uint32_t>(cellsPerEdge);
+  const std::size_t gridVertices = gridVertexCount(scheme, cellsPerEdge);
   auto topology = std::make_shared<TileTopology>();
   topology->cellsPerEdge = cellsPerEdge;
-  topology->skirtAnchors = boundaryInSkirtOrder(cells);
-  addGridTriangles(cells, topology->triangles);
-  addSkirtTriangles(cells, topology->skirtAnchors, topology->triangles);
-  topology->gridIndices.resize((cells + 1) * (cells + 1) + topology->skirtAnchors.size());
+  if (scheme == Scheme::Cube) {
+    topology->skirtAnchors = squareBoundary(cells);
+    addSquareTriangles(cells, topology->triangles);
+  } else {
+    topology->skirtAnchors = triangularBoundary(cellsPerEdge);
+    addTriangularTriangles(cellsPerEdge, topology->triangles);
+  }
+  addSkirtTriangles(cells, static_cast<std::uint32_t>(gridVertices), topology->skirtAnchors, topology->triangles);
+  topology->gridIndices.resize(gridVertices + topology->skirtAnchors.size());
   std::iota(topology->gridIndices.begin(), topology->gridIndices.end(), std::uint16_t{0});
   return topology;
 }

@@ -34,7 +34,7 @@ code {{ background: #f2f2f2; padding: .1rem .3rem; border-radius: 3px; }}
 <p><code>terrane-view --server http://HOST:PORT</code></p>
 <h2>Bodies</h2>
 <table>
-<tr><th>Body</th><th>Radius</th><th>Levels</th><th>Six coarsest tiles</th></tr>
+<tr><th>Body</th><th>Radius</th><th>Levels</th><th>Coarsest tiles</th></tr>
 )";
 
 constexpr std::string_view kTail = R"(</table>
@@ -79,8 +79,9 @@ std::string rootPage(const SceneInfo& scene) {
       fmt::format(fmt::runtime(kHead), arg("name", escapeHtml(scene.name)), arg("summary", escapeHtml(scene.summary)));
   for (const BodyInfo& body : scene.bodies) {
     std::string links;
-    for (int face = 0; face < faceCount(Scheme::Cube); ++face) {
-      const FacePath path = FacePath::wholeFace(Scheme::Cube, face);
+    const Scheme scheme = body.selection.scheme;
+    for (int face = 0; face < faceCount(scheme); ++face) {
+      const FacePath path = FacePath::wholeFace(scheme, face);
       links += fmt::format("<a href=\"{}\">{}</a> ", tileTarget({body.revision, body.name, path}), path.text());
     }
     page += fmt::format("<tr><td>{}</td><td>{:.10g} km</td><td>0 to {}</td><td>{}</td></tr>\n", escapeHtml(body.name),

@@ -205,22 +205,28 @@ class SceneReader {
     if (!node) return;
     const toml::array* array = node->as_array();
     if (!array) return wrongType(*node, join(path, "schemes"), "an array of strings, as in [\"cube\"]");
-    if (array->empty()) return fail(node->source(), join(path, "schemes"), "is empty; allowed: \"cube\"");
+    if (array->empty()) return fail(node->source(), join(path, "schemes"), "is empty; allowed: \"cube\", \"ico\"");
     body.schemes.clear();
-    for (std::size_t i = 0; i < array->size(); ++i) {
-      const toml::node& element = *array->get(i);
-      const std::string key = fmt::format("{}.schemes[{}]", path, i);
-      const std::optional<std::string> text = element.value_exact<std::string>();
-      if (!text) return wrongType(element, key, "a string; allowed: \"cube\"");
-      if (*text == schemeName(Scheme::Ico))
-        return fail(element.source(), key, "\"ico\" is not served yet; allowed: \"cube\"", ErrorKind::Unsupported);
-      if (*text != schemeName(Scheme::Cube))
-        return fail(element.source(), key,
-                    fmt::format("{} is not a tiling scheme; allowed: \"cube\"", quotedForMessage(*text)));
-      if (!body.schemes.empty())
-        return fail(element.source(), key, "\"cube\" is listed twice; allowed: each scheme once");
-      body.schemes.push_back(Scheme::Cube);
-    }
+    for (std::size_t i = 0; i < array->size(); ++i)
+      readScheme(*array->get(i), fmt::format("{}.schemes[{}]", path, i), body);
+  }
+
+  void readScheme(const toml::node& node, const std::string& key, Body& body) {
+    const std::optional<std::string> text = node.value_exact<std::string>();
+    if (!text) return wrongType(node, key, "a string; allowed: \"cube\", \"ico\"");
+    const bool cube = *text == schemeName(Scheme::Cube);
+    if (!cube && *text != schemeName(Scheme::Ico))
+      return fail(node.source(), key,
+                  fmt::format("{} is not a tiling scheme; allowed: \"cube\", \"ico\"", quotedForMessage(*text)));
+    const Scheme scheme = cube ? Scheme::Cube : Scheme::Ico;
+    if (std::ranges::count(body.schemes, scheme) > 0)
+      return fail(node.source(), key, fmt::format("\"{}\" is listed twice; allowed: each scheme once", *text));
+    if (!body.schemes.empty())
+      return fail(node.source(), key,
+                  fmt::format("\"{}\" beside \"{}\" is not served yet; allowed: one scheme a body", *text,
+                              schemeName(body.schemes.front())),
+                  ErrorKind::Unsupported);
+    body.schemes.push_back(scheme);
   }
 
   void readSeed(const toml::table& table, const std::string& path, Body& body) {

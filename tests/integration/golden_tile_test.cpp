@@ -1,7 +1,7 @@
-// The bytes of tiles: the same as those in tests/golden/moon_tiles.txt, on every build. (That they depend on neither
-// threads, nor the build of the kernels, nor the C library is tile_bytes_test's.) Where they change on purpose, raise
-// kGeneratorVersion and write the file anew:
-//   TERRANE_WRITE_GOLDEN=1 integration_tests --gtest_filter='GoldenTile.*'
+// The bytes of tiles: the same as those in tests/golden, a file for each scheme, on every build. (That they depend on
+// neither threads, nor the build of the kernels, nor the C library is tile_bytes_test's.) Where they change on purpose,
+// raise kGeneratorVersion and write the file anew:
+//   TERRANE_WRITE_GOLDEN=1 integration_tests --gtest_filter='*GoldenTile.*'
 // which refuses while the version is the one that the file already has.
 
 #include <gtest/gtest.h>
@@ -13,21 +13,26 @@
 #include <random>
 
 #include "server/build/tile_builder.h"
+#include "tests/support/both_schemes.h"
+#include "tests/support/ico_points.h"
 #include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {
 
-const std::string kGoldenFile = std::string(TERRANE_SOURCE_DIR) + "/tests/golden/moon_tiles.txt";
+std::string goldenFile(Scheme scheme) {
+  return std::string(TERRANE_SOURCE_DIR) + "/tests/golden/" +
+         (scheme == Scheme::Cube ? "moon_tiles.txt" : "moon_ico_tiles.txt");
+}
 
 struct Golden {
   int generatorVersion = 0;
   std::vector<std::string> lines;  ///< "path hash"
 };
 
-Golden readGolden() {
+Golden readGolden(Scheme scheme) {
   Golden golden;
-  std::ifstream file(kGoldenFile);
+  std::ifstream file(goldenFile(scheme));
   std::string line;
   while (std::getline(file, line)) {
     if (line.rfind("generator ", 0) == 0) {
@@ -39,15 +44,15 @@ Golden readGolden() {
   return golden;
 }
 
-void writeGolden(const std::vector<std::string>& lines) {
-  std::ofstream file(kGoldenFile);
+void writeGolden(Scheme scheme, const std::vector<std::string>& lines) {
+  std::ofstream file(goldenFile(scheme));
   file << "# Tiles of the Moon: path and XXH3 of the GLB. Written by golden_tile_test, which says how.\n";
   file << "generator " << kGeneratorVersion << '\n';
   for (const std::string& line : lines) file << line << '\n';
 }
 
 /// All faces, and four tiles of each level down to the cap, borders of faces among them.
-std::vector<FacePath> goldenPaths() {
+std::vector<FacePath> cubePaths() {
   std::mt19937_64 random(1969);
   std::vector<FacePath> paths;
   for (int face = 0; face < 6; ++face) paths.push_back(FacePath::wholeFace(Scheme::Cube, face));
@@ -63,6 +68,15 @@ std::vector<FacePath> goldenPaths() {
   return paths;
 }
 
+std::vector<FacePath> icoPaths(int maxLevel) {
+  std::mt19937_64 random(1969);
+  std::vector<FacePath> paths;
+  for (int face = 0; face < kIcosahedronFaces; ++face) paths.push_back(FacePath::wholeFace(Scheme::Ico, face));
+  for (int level = 1; level <= maxLevel; ++level)
+    for (int k = 0; k < 4; ++k) paths.push_back(test::randomIcoTile(random, level));
+  return paths;
+}
+
 std::string hashLine(const TileBuilder& builder, const FacePath& path) {
   const Result<BuiltTile> built = builder.build(path);
   if (built.has_error()) return path.text() + " " + built.error().text();
@@ -72,37 +86,38 @@ std::string hashLine(const TileBuilder& builder, const FacePath& path) {
   return path.text() + " " + hash;
 }
 
-const std::vector<std::string>& built() {
-  static const std::vector<std::string> lines = [] {
-    const TileBuilder builder(testMoon(), {}, SimdPath::Default);
-    std::vector<std::string> hashes;
-    for (const FacePath& path : goldenPaths()) hashes.push_back(hashLine(builder, path));
-    return hashes;
-  }();
+std::vector<std::string> hashLines(Scheme scheme) {
+  const TileBuilder builder(tiledBy(scheme, testMoon()), {}, SimdPath::Default);
+  std::vector<std::string> lines;
+  for (const FacePath& path : scheme == Scheme::Cube ? cubePaths() : icoPaths(builder.info().selection.maxLevel))
+    lines.push_back(hashLine(builder, path));
   return lines;
 }
 
-TEST(GoldenTile, BytesAreTheOnesThisGeneratorVersionAlwaysMade) {
-  const Golden golden = readGolden();
-  if (std::getenv("TERRANE_WRITE_GOLDEN") != nullptr && golden.lines != built()) {
+class GoldenTile : public testing::TestWithParam<Scheme> {};
+INSTANTIATE_TEST_SUITE_P(Schemes, GoldenTile, test::bothSchemes(), test::nameOfScheme);
+
+TEST_P(GoldenTile, BytesAreTheOnesThisGeneratorVersionAlwaysMade) {
+  const Golden golden = readGolden(GetParam());
+  const std::vector<std::string> built = hashLines(GetParam());
+  const std::string file = goldenFile(GetParam());
+  if (std::getenv("TERRANE_WRITE_GOLDEN") != nullptr && golden.lines != built) {
     ASSERT_TRUE(golden.lines.empty() || golden.generatorVersion != kGeneratorVersion)
-        << "the bytes changed: raise kGeneratorVersion (server/build/tile_builder.h) before writing " << kGoldenFile;
-    writeGolden(built());
-    GTEST_SKIP() << "wrote " << kGoldenFile;
+        << "the bytes changed: raise kGeneratorVersion (server/build/tile_builder.h) before writing " << file;
+    writeGolden(GetParam(), built);
+    GTEST_SKIP() << "wrote " << file;
   }
   ASSERT_EQ(golden.generatorVersion, kGeneratorVersion)
-      << "write " << kGoldenFile << " for this version: see the top of this test";
-  ASSERT_EQ(golden.lines.size(), built().size());
+      << "write " << file << " for this version: see the top of this test";
+  ASSERT_EQ(golden.lines.size(), built.size());
   for (std::size_t i = 0; i < golden.lines.size(); ++i)
-    EXPECT_EQ(golden.lines[i], built()[i]) << "the bytes changed, but kGeneratorVersion did not";
+    EXPECT_EQ(golden.lines[i], built[i]) << "the bytes changed, but kGeneratorVersion did not";
 }
 
-TEST(GoldenTile, AnotherSeedIsAnotherMoon) {
+TEST(GoldenTileControl, AnotherSeedIsAnotherMoon) {
   // The control: the hashes do see a difference.
-  Body other = testMoon();
-  other.seed = 1970;
-  const TileBuilder builder(other, {}, SimdPath::Default);
-  EXPECT_NE(hashLine(builder, goldenPaths()[20]), built()[20]);
+  const TileBuilder builder(testMoon(1970), {}, SimdPath::Default);
+  EXPECT_NE(hashLine(builder, cubePaths()[20]), readGolden(Scheme::Cube).lines.at(20));
 }
 
 }  // namespace

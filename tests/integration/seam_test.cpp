@@ -1,5 +1,5 @@
-// Tiles that share an edge decode to the same coordinates on it: over all face edges and cube corners, and for random
-// pairs of every level on bodies of every size.
+// Tiles of either scheme that share an edge decode to the same coordinates, normals and colours on it: over all edges
+// and corners of the cube and the icosahedron, and for random pairs of every level on bodies of every size.
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,16 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <glm/geometric.hpp>
 #include <map>
 #include <random>
 
 #include "common/tiling/lattice.h"
 #include "proto/gltf_tile.h"
 #include "server/build/tile_builder.h"
+#include "tests/support/both_schemes.h"
 #include "tests/support/edge_vertices.h"
+#include "tests/support/ico_points.h"
 #include "tests/support/moon_body.h"
 
 namespace terrane {
@@ -38,7 +41,7 @@ Tile decoded(const TileBuilder& builder, const FacePath& path) {
   return tile.has_value() ? std::move(*tile) : Tile{};
 }
 
-FacePath randomTile(std::mt19937_64& random, int level) {
+FacePath randomCubeTile(std::mt19937_64& random, int level) {
   const std::uint64_t last = (std::uint64_t{1} << level) - 1;
   auto at = [&] {
     // A third of the tiles lie at a border of their face.
@@ -55,52 +58,84 @@ FacePath randomTile(std::mt19937_64& random, int level) {
   return FacePath::cubeTile(static_cast<int>(random() % 6), level, column, row);
 }
 
-TEST(Seam, AllTwentyFourFaceEdgesAgree) {
-  const TileBuilder builder(testMoon(), {}, bestSimdPath());
+FacePath randomTile(std::mt19937_64& random, Scheme scheme, int level) {
+  return scheme == Scheme::Cube ? randomCubeTile(random, level) : test::randomIcoTile(random, level);
+}
+
+/// About in the middle of an edge of a face.
+FacePath tileAtFaceEdge(Scheme scheme, int face, int edge, int level) {
+  FacePath path = FacePath::wholeFace(scheme, face);
+  if (scheme == Scheme::Ico) {
+    while (path.level() < level) path = path.child((edge + (path.level() == 0 ? 1 : 2)) % 3);
+    return path;
+  }
+  const std::uint32_t last = (1u << level) - 1, middle = last / 2;
+  const Side side = static_cast<Side>(edge);
+  const std::uint32_t column = side == Side::UMin ? 0 : side == Side::UMax ? last : middle;
+  const std::uint32_t row = side == Side::VMin ? 0 : side == Side::VMax ? last : middle;
+  return FacePath::cubeTile(face, level, column, row);
+}
+
+FacePath tileAtFaceCorner(Scheme scheme, int face, int corner, int level) {
+  FacePath path = FacePath::wholeFace(scheme, face);
+  while (path.level() < level) path = path.child(corner);  // of the cube too: a digit is a quadrant
+  return path;
+}
+
+EdgeVertex cornerVertex(const Tile& tile, int corner) {
+  if (tile.metadata.path.scheme() == Scheme::Ico) return edgeVertices(tile, (corner + 2) % 3).front();
+  const std::vector<EdgeVertex> edge = edgeVertices(tile, corner & 2 ? Side::VMax : Side::VMin);
+  return corner & 1 ? edge.back() : edge.front();
+}
+
+/// Which corner of the solid lies nearest to a point: of the cube by its signs.
+int solidCorner(Scheme scheme, const LatticePoint& point) {
+  if (scheme == Scheme::Cube) return (point.x > 0) + 2 * (point.y > 0) + 4 * (point.z > 0);
+  const auto along = [&](int vertex) { return glm::dot(glm::dvec3(point), icosahedronVertex(vertex)); };
+  int nearest = 0;
+  for (int vertex = 1; vertex < kIcosahedronVertices; ++vertex)
+    if (along(vertex) > along(nearest)) nearest = vertex;
+  return nearest;
+}
+
+class Seam : public testing::TestWithParam<Scheme> {};
+INSTANTIATE_TEST_SUITE_P(Schemes, Seam, test::bothSchemes(), test::nameOfScheme);
+
+TEST_P(Seam, AllEdgesOfFacesAgree) {
+  const Scheme scheme = GetParam();
+  const TileBuilder builder(tiledBy(scheme, testMoon()), {}, bestSimdPath());
   for (const int level : {0, 3}) {
-    for (int face = 0; face < 6; ++face) {
-      for (int side = 0; side < kEdgeCount; ++side) {
-        const std::uint32_t last = (1u << level) - 1, middle = last / 2;
-        const Side edge = static_cast<Side>(side);
-        const std::uint32_t column = edge == Side::UMin ? 0 : edge == Side::UMax ? last : middle;
-        const std::uint32_t row = edge == Side::VMin ? 0 : edge == Side::VMax ? last : middle;
-        const FacePath path = FacePath::cubeTile(face, level, column, row);
-        const std::optional<FacePath> neighbour = path.neighbour(edge);
-        ASSERT_TRUE(neighbour.has_value());
-        ASSERT_NE(neighbour->face(), face);
-        expectSameEdge(decoded(builder, path), edge, decoded(builder, *neighbour));
+    for (int face = 0; face < faceCount(scheme); ++face) {
+      for (int edge = 0; edge < edgeCount(scheme); ++edge) {
+        const FacePath path = tileAtFaceEdge(scheme, face, edge, level), beyond = tileBeyondEdge(path, edge);
+        ASSERT_NE(beyond.face(), face);
+        expectSameEdge(decoded(builder, path), edge, decoded(builder, beyond));
       }
     }
   }
 }
 
-TEST(Seam, ThreeFacesAgreeInEachOfTheEightCubeCorners) {
-  const TileBuilder builder(testMoon(), {.cellsPerEdge = 16, .draco = {}}, bestSimdPath());
-  for (const int level : {0, 5, 30}) {
-    // The lattice point nearest to each corner of the cube, by the signs of its coordinates.
-    std::map<std::array<bool, 3>, std::vector<EdgeVertex>> corners;
-    for (int face = 0; face < 6; ++face) {
-      for (const bool uMax : {false, true}) {
-        for (const bool vMax : {false, true}) {
-          const auto last = static_cast<std::uint32_t>((std::uint64_t{1} << level) - 1);
-          const Tile tile = decoded(builder, FacePath::cubeTile(face, level, uMax ? last : 0, vMax ? last : 0));
-          const std::vector<EdgeVertex> edge = edgeVertices(tile, vMax ? Side::VMax : Side::VMin);
-          const EdgeVertex& corner = uMax ? edge.back() : edge.front();
-          corners[{corner.point.x > 0, corner.point.y > 0, corner.point.z > 0}].push_back(corner);
-        }
+TEST_P(Seam, AllFacesAgreeInEachCornerOfTheSolid) {
+  const Scheme scheme = GetParam();
+  const TileBuilder builder(tiledBy(scheme, testMoon()), {.cellsPerEdge = 16, .draco = {}}, bestSimdPath());
+  for (const int level : {0, 5, builder.info().selection.maxLevel}) {
+    std::map<int, std::vector<EdgeVertex>> corners;
+    for (int face = 0; face < faceCount(scheme); ++face) {
+      for (int corner = 0; corner < edgeCount(scheme); ++corner) {
+        const EdgeVertex vertex = cornerVertex(decoded(builder, tileAtFaceCorner(scheme, face, corner, level)), corner);
+        corners[solidCorner(scheme, vertex.point)].push_back(vertex);
       }
     }
-    ASSERT_EQ(corners.size(), 8u);
-    for (const auto& [signs, vertices] : corners) {
-      ASSERT_EQ(vertices.size(), 3u);
-      EXPECT_EQ(vertices[0], vertices[1]);
-      EXPECT_EQ(vertices[0], vertices[2]);
+    ASSERT_EQ(corners.size(), scheme == Scheme::Cube ? 8u : 12u);
+    for (const auto& [corner, vertices] : corners) {
+      ASSERT_EQ(vertices.size(), scheme == Scheme::Cube ? 3u : 5u);
+      for (const EdgeVertex& vertex : vertices) EXPECT_EQ(vertex, vertices.front()) << "corner " << corner;
     }
   }
 }
 
 /// Every level 0 .. cap of a body, its radius log-uniform over all that the lattice serves, relief and all.
-void checkRandomPairs(int cellsPerEdge, int bodies, int pairs) {
+void checkRandomPairs(Scheme scheme, int cellsPerEdge, int bodies, int pairs) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> share(0, 1);
   std::printf("seed %u, %d pairs of %d cells on %d bodies\n", kSeed, pairs, cellsPerEdge, bodies);
@@ -110,20 +145,22 @@ void checkRandomPairs(int cellsPerEdge, int bodies, int pairs) {
                                       : kMinRadiusMeters * std::pow(kMaxRadiusMeters / kMinRadiusMeters, share(random));
     // Relief that was made for the Moon would turn a small body inside out, so those are bare.
     const FieldKind field = radius > 1e6 && radius < 1e7 ? FieldKind::Lunar : FieldKind::Sphere;
-    const TileBuilder builder(testBody(field, radius), {.cellsPerEdge = cellsPerEdge, .draco = {}}, bestSimdPath());
+    const TileBuilder builder(tiledBy(scheme, testBody(field, radius)), {.cellsPerEdge = cellsPerEdge, .draco = {}},
+                              bestSimdPath());
     for (int pair = 0; pair < pairs / bodies; ++pair) {
-      const FacePath path = randomTile(random, pair % (builder.info().selection.maxLevel + 1));
-      const Side side = static_cast<Side>(random() % kEdgeCount);
+      const FacePath path = randomTile(random, scheme, pair % (builder.info().selection.maxLevel + 1));
+      const int edge = static_cast<int>(random() % static_cast<unsigned>(edgeCount(scheme)));
       SCOPED_TRACE(testing::Message() << "radius " << radius);
-      ASSERT_NO_FATAL_FAILURE(expectSameEdge(decoded(builder, path), side, decoded(builder, *path.neighbour(side))));
+      ASSERT_NO_FATAL_FAILURE(
+          expectSameEdge(decoded(builder, path), edge, decoded(builder, tileBeyondEdge(path, edge))));
     }
   }
 }
 
-TEST(Seam, RandomNeighboursOfEveryLevelAndRadiusAgree) { checkRandomPairs(8, 50, kPairs); }
-TEST(Seam, RandomNeighboursAgreeAtTheServedNumberOfCells) { checkRandomPairs(64, 10, kPairs / 50); }
+TEST_P(Seam, RandomNeighboursOfEveryLevelAndRadiusAgree) { checkRandomPairs(GetParam(), 8, 50, kPairs); }
+TEST_P(Seam, RandomNeighboursAgreeAtTheServedNumberOfCells) { checkRandomPairs(GetParam(), 64, 10, kPairs / 50); }
 
-TEST(Seam, TilesQuantisedInTheirOwnBoxesWouldNotAgree) {
+TEST(SeamControl, TilesQuantisedInTheirOwnBoxesWouldNotAgree) {
   // The control: the same two meshes, each rounded to 16 bits of its own bounding box as encoders do by default.
   const TileBuilder builder(testMoon(), {.cellsPerEdge = 16, .draco = {}}, bestSimdPath());
   const FacePath path = *FacePath::parse("cube/0/0123"), beside = *path.neighbour(Side::UMax);

@@ -80,7 +80,7 @@ TEST(IcoShapes, EdgesAndAnglesAreWhatBoundsAndSkirtsRestOnAtAllLevels) {
     print("bisected", level, bisected);
     print("gnomonic", level, gnomonic);
     for (const Shapes& shapes : {bisected, gnomonic}) {
-      EXPECT_LE(shapes.longestEdge, 1.2);
+      EXPECT_LE(shapes.longestEdge, kIcoLongestEdge);
       EXPECT_GT(shapes.shortestEdge, 0.79);
       // Beside the twelve vertices, where five equal angles meet and the triangles are nearly flat.
       EXPECT_GE(shapes.smallestAngle, 54.0 - 1e-9);

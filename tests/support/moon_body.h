@@ -25,6 +25,12 @@ inline constexpr double kMoonRadiusMeters = 1'737'400.0;
 
 inline Body testMoon(std::uint64_t seed = 1969) { return testBody(FieldKind::Lunar, kMoonRadiusMeters, seed); }
 
+/// The same body on tiles of another scheme.
+inline Body tiledBy(Scheme scheme, Body body) {
+  body.schemes = {scheme};
+  return body;
+}
+
 /// The Moon as selection sees it, with errors of 0.4 cells of 64, as the lunar field's are.
 inline SelectionBody selectionMoon(int maxLevel, const HeightRange& heights, Scheme scheme = Scheme::Cube) {
   SelectionBody body;

@@ -60,7 +60,8 @@ std::size_t builtVerticesThatDiffer(const TileLoopsOf<double>& loops, int level)
   if (!built) return kVertices;
 
   const auto field = makeHeightField(builder.body(), bestSimdPath());
-  const double minWavelength = levelAccuracies(*field, place.radiusMeters, kCells, level).back().minWavelengthMeters;
+  const double minWavelength =
+      levelAccuracies(*field, place.radiusMeters, Scheme::Cube, kCells, level).back().minWavelengthMeters;
   Columns<double> directions(kVertices);
   directionsOf(place, loops, directions);
   SurfaceSamples samples;

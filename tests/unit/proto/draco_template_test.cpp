@@ -53,24 +53,30 @@ std::vector<std::pair<std::string, TileMesh>> kindsOfData(const TileMesh& model)
   return kinds;
 }
 
+/// Of the model's kind of tile.
+void expectBytesOfLibdraco(const TileMesh& model, const std::string& kind) {
+  const auto learnt = DracoTemplate::learn(model, {});
+  ASSERT_NE(learnt, nullptr) << kind;
+  for (const auto& [name, mesh] : kindsOfData(model)) {
+    const auto expected = encodeDraco(mesh, {}), actual = learnt->encode(mesh);
+    ASSERT_TRUE(expected.has_value() && actual.has_value()) << name;
+    EXPECT_TRUE(actual->bytes == expected->bytes) << name << ", " << kind << ", seed " << kSeed;
+    EXPECT_EQ(actual->vertexCount, expected->vertexCount);
+    EXPECT_EQ(actual->triangleCount, expected->triangleCount);
+    EXPECT_EQ(actual->colorId, expected->colorId);
+    EXPECT_EQ(actual->gridId, expected->gridId);
+  }
+}
+
 TEST(DracoTemplate, GivesTheBytesOfLibdraco) {
   RecordProperty("seed", kSeed);
-  for (const int cells : {1, 2, 8, 64, 128})
-    for (const bool skirts : {false, true})
-      for (const bool colors : {false, true}) {
-        const TileMesh model = sampleMesh(cells, skirts, colors);
-        const auto learnt = DracoTemplate::learn(model, {});
-        ASSERT_NE(learnt, nullptr) << cells << " cells";
-        for (const auto& [name, mesh] : kindsOfData(model)) {
-          const auto expected = encodeDraco(mesh, {}), actual = learnt->encode(mesh);
-          ASSERT_TRUE(expected.has_value() && actual.has_value()) << name;
-          EXPECT_TRUE(actual->bytes == expected->bytes) << name << ", " << cells << " cells, seed " << kSeed;
-          EXPECT_EQ(actual->vertexCount, expected->vertexCount);
-          EXPECT_EQ(actual->triangleCount, expected->triangleCount);
-          EXPECT_EQ(actual->colorId, expected->colorId);
-          EXPECT_EQ(actual->gridId, expected->gridId);
-        }
-      }
+  for (const FacePath& path : kSamplePaths)
+    for (const int cells : {1, 2, 8, 64, 128})
+      for (const bool skirts : {false, true})
+        for (const bool colors : {false, true})
+          expectBytesOfLibdraco(
+              sampleTile({.path = path, .cellsPerEdge = cells, .skirts = skirts, .colors = colors}).mesh,
+              path.text() + ", " + std::to_string(cells) + " cells");
 }
 
 TEST(DracoTemplate, GivesTheBytesOfLibdracoInEverySettingItTakes) {
@@ -95,7 +101,9 @@ TEST(DracoTemplate, LeavesAMeshOfAnotherKindToLibdraco) {
   std::rotate(turned.triangles.begin(), turned.triangles.begin() + 3, turned.triangles.end());
   TileMesh renumbered = sampleMesh(8);
   std::swap(renumbered.gridIndices.front(), renumbered.gridIndices.back());
-  for (const TileMesh& other : {sampleMesh(4), sampleMesh(8, false), sampleMesh(8, true, false), turned, renumbered}) {
+  const TileMesh triangle = sampleTile({.path = kSamplePaths[1], .cellsPerEdge = 8}).mesh;
+  for (const TileMesh& other :
+       {triangle, sampleMesh(4), sampleMesh(8, false), sampleMesh(8, true, false), turned, renumbered}) {
     EXPECT_FALSE(learnt->fits(other));
     EXPECT_TRUE(learnt->encode(other)->bytes == encodeDraco(other, {})->bytes);
   }

@@ -22,17 +22,18 @@ nlohmann::json jsonOf(const std::vector<std::uint8_t>& glb) { return nlohmann::j
 std::string textOf(const std::vector<std::uint8_t>& glb) { return std::string(unpackGlb(glb)->json); }
 
 TEST(GltfTile, RoundTripIsExact) {
-  for (const int cells : {1, 16, 64})
-    for (const bool skirts : {false, true})
-      for (const bool colors : {false, true}) {
-        const Tile tile = sampleTile({.cellsPerEdge = cells, .skirts = skirts, .colors = colors});
-        const auto glb = encodeTile(tile, {});
-        ASSERT_TRUE(glb.has_value()) << glb.error().text();
-        const auto back = decodeTile(*glb);
-        ASSERT_TRUE(back.has_value()) << back.error().text();
-        EXPECT_TRUE(sameMetadata(tile.metadata, back->metadata));
-        EXPECT_TRUE(sameMesh(tile.mesh, back->mesh, kNormalTolerance));
-      }
+  for (const FacePath& path : kSamplePaths)
+    for (const int cells : {1, 16, 64})
+      for (const bool skirts : {false, true})
+        for (const bool colors : {false, true}) {
+          const Tile tile = sampleTile({.path = path, .cellsPerEdge = cells, .skirts = skirts, .colors = colors});
+          const auto glb = encodeTile(tile, {});
+          ASSERT_TRUE(glb.has_value()) << glb.error().text();
+          const auto back = decodeTile(*glb);
+          ASSERT_TRUE(back.has_value()) << back.error().text();
+          EXPECT_TRUE(sameMetadata(tile.metadata, back->metadata));
+          EXPECT_TRUE(sameMesh(tile.mesh, back->mesh, kNormalTolerance));
+        }
 }
 
 TEST(GltfTile, MetadataKeepsEveryBit) {

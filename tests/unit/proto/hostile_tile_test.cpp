@@ -24,6 +24,12 @@ const std::vector<std::uint8_t>& sampleGlb() {
   return glb;
 }
 
+const std::vector<std::uint8_t>& triangleGlb() {
+  static const std::vector<std::uint8_t> glb =
+      *encodeTile(sampleTile({.path = kSamplePaths[1], .cellsPerEdge = 8}), {});
+  return glb;
+}
+
 nlohmann::json document() { return nlohmann::json::parse(unpackGlb(sampleGlb())->json); }
 
 std::vector<std::uint8_t> withDocument(std::string_view json) { return packGlb(json, unpackGlb(sampleGlb())->bin); }
@@ -49,12 +55,14 @@ Refusal refusalWith(const std::string& pointer, const nlohmann::json& value) {
 /// Whatever is accepted must be a tile that a renderer can trust.
 void expectSound(const Tile& tile) {
   const TileMesh& mesh = tile.mesh;
-  const auto edge = static_cast<std::size_t>(tile.metadata.cellsPerEdge) + 1;
+  const Scheme scheme = tile.metadata.path.scheme();
+  const int cells = tile.metadata.cellsPerEdge;
+  const std::size_t gridLimit = gridVertexCount(scheme, cells) + skirtVertexCount(scheme, cells);
   ASSERT_EQ(mesh.offsets.size(), 3 * mesh.vertexCount());
   ASSERT_EQ(mesh.normals.size(), 3 * mesh.vertexCount());
   ASSERT_TRUE(mesh.colors.empty() || mesh.colors.size() == 3 * mesh.vertexCount());
   for (const std::uint32_t index : mesh.triangles) ASSERT_LT(index, mesh.vertexCount());
-  for (const std::uint16_t index : mesh.gridIndices) ASSERT_LT(index, edge * edge + 4 * edge);
+  for (const std::uint16_t index : mesh.gridIndices) ASSERT_LT(index, gridLimit);
   for (const float component : mesh.normals) ASSERT_LE(std::abs(component), 1.01f);
   ASSERT_TRUE(std::isfinite(tile.metadata.geometricErrorMeters) && std::isfinite(tile.metadata.sphere.radiusMeters));
 }
@@ -95,7 +103,7 @@ TEST(HostileTile, EveryWordOfTheContainerMayLie) {
 TEST(HostileTile, FlippedBitsGiveAnErrorOrASoundTile) {
   for (unsigned seed = 0; seed < 10000; ++seed) {
     std::mt19937 random(seed);
-    std::vector<std::uint8_t> glb = sampleGlb();
+    std::vector<std::uint8_t> glb = seed % 2 == 0 ? sampleGlb() : triangleGlb();
     for (auto flips = 1 + random() % 3; flips > 0; --flips)
       glb[random() % glb.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
     const auto tile = decodeTile(glb);
@@ -167,6 +175,22 @@ TEST(HostileTile, RefusalsNameTheMember) {
   for (const auto& [pointer, value, field] : cases) {
     EXPECT_EQ(refusalWith(pointer, value).field, field) << pointer << " = " << value;
   }
+}
+
+TEST(HostileTile, ATriangularTileIsHeldToItsOwnGrid) {
+  const auto refusalOfTriangle = [](const char* key, const nlohmann::json& value) {
+    nlohmann::json json = nlohmann::json::parse(unpackGlb(triangleGlb())->json);
+    json["nodes"][0]["extras"]["terrane"][key] = value;
+    return refusalOf(packGlb(json.dump(), unpackGlb(triangleGlb())->bin)).field;
+  };
+  EXPECT_EQ(refusalOf(triangleGlb()).field, "accepted");
+  EXPECT_EQ(refusalOfTriangle("cellsPerEdge", 7), "draco") << "grid indices beyond the grid";
+  EXPECT_EQ(refusalOfTriangle("cellsPerEdge", 357), "accepted");
+  EXPECT_EQ(refusalOfTriangle("cellsPerEdge", 358), "extras.terrane.cellsPerEdge") << "65,697 vertices";
+  EXPECT_EQ(refusalOfTriangle("path", "ico/20/0321330"), "extras.terrane.path");
+  EXPECT_EQ(refusalOfTriangle("path", "ico/17/0321334"), "extras.terrane.path");
+  // A square of eight cells has 117 vertices with its skirts, the triangle 72.
+  EXPECT_EQ(refusalWith("/nodes/0/extras/terrane/path", "ico/2/0321330").field, "draco");
 }
 
 TEST(HostileTile, EveryMemberOfTheMetadataIsNeeded) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -11,6 +12,8 @@
 #include <vector>
 
 #include "common/tiling/cube_sphere.h"
+#include "common/tiling/ico_sphere.h"
+#include "common/tiling/triangle_tile.h"
 
 namespace terrane::test {
 namespace {
@@ -36,7 +39,8 @@ double valueNoise(std::uint32_t x, std::uint32_t y, std::uint32_t shift, std::ui
 class Sampler {
  public:
   explicit Sampler(const SampleSettings& settings)
-      : settings_(settings), width_(nominalTileWidthMeters(settings.radiusMeters, settings.path.level())) {}
+      : settings_(settings),
+        width_(nominalTileWidthMeters(settings.radiusMeters, settings.path.level(), settings.path.scheme())) {}
 
   double height(int i, int j) const {
     const auto unit = static_cast<std::uint32_t>(1024 / settings_.cellsPerEdge);
@@ -48,18 +52,27 @@ class Sampler {
   }
 
   /// Grid points beyond the tile's edge too, for normals.
-  glm::dvec3 position(int i, int j) const {
-    const double cells = settings_.cellsPerEdge * std::exp2(settings_.path.level());
-    const double s = 2 * (settings_.path.column() * static_cast<double>(settings_.cellsPerEdge) + i) / cells - 1;
-    const double t = 2 * (settings_.path.row() * static_cast<double>(settings_.cellsPerEdge) + j) / cells - 1;
-    return cubeDirection(settings_.path.face(), s, t) * (settings_.radiusMeters + height(i, j));
-  }
+  glm::dvec3 position(int i, int j) const { return direction(i, j) * (settings_.radiusMeters + height(i, j)); }
 
+  /// Of a triangular tile simply upwards: its grid ends at its edges.
   glm::dvec3 normal(int i, int j) const {
+    if (settings_.path.scheme() == Scheme::Ico) return direction(i, j);
     return glm::normalize(glm::cross(position(i + 1, j) - position(i - 1, j), position(i, j + 1) - position(i, j - 1)));
   }
 
  private:
+  glm::dvec3 direction(int i, int j) const {
+    if (settings_.path.scheme() == Scheme::Ico) {
+      const int gridLevel = settings_.path.level() + std::countr_zero(static_cast<unsigned>(settings_.cellsPerEdge));
+      return icoGridDirection(kIcoMap, settings_.path.face(), gridLevel,
+                              gridVertexWeights(triangleTile(settings_.path), settings_.cellsPerEdge, {i, j}));
+    }
+    const double cells = settings_.cellsPerEdge * std::exp2(settings_.path.level());
+    const double s = 2 * (settings_.path.column() * static_cast<double>(settings_.cellsPerEdge) + i) / cells - 1;
+    const double t = 2 * (settings_.path.row() * static_cast<double>(settings_.cellsPerEdge) + j) / cells - 1;
+    return cubeDirection(settings_.path.face(), s, t);
+  }
+
   SampleSettings settings_;
   double width_;
 };
@@ -73,8 +86,12 @@ class MeshBuilder {
                         {shade, static_cast<std::uint8_t>(shade * 7 / 8), static_cast<std::uint8_t>(shade / 2)});
     mesh_.gridIndices.push_back(static_cast<std::uint16_t>(mesh_.gridIndices.size()));
   }
+  void triangle(int a, int b, int c) {
+    for (const int index : {a, b, c}) mesh_.triangles.push_back(static_cast<std::uint32_t>(index));
+  }
   void quad(int a, int b, int c, int d) {
-    for (const int index : {a, b, c, a, c, d}) mesh_.triangles.push_back(static_cast<std::uint32_t>(index));
+    triangle(a, b, c);
+    triangle(a, c, d);
   }
   LatticePoint takeOrigin() {
     LatticePoint origin = points_.front();
@@ -91,16 +108,64 @@ class MeshBuilder {
   TileMesh mesh_;
 };
 
+/// Adds a vertex at grid place (i, j), so far below the ground.
+using AddVertex = std::function<void(int i, int j, double dropMeters)>;
+
+void addSquare(MeshBuilder& builder, const AddVertex& add, int cells, double skirtMeters) {
+  const int edge = cells + 1;
+  for (int j = 0; j < edge; ++j)
+    for (int i = 0; i < edge; ++i) add(i, j, 0);
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      const int a = j * edge + i;
+      builder.quad(a, a + 1, a + 1 + edge, a + edge);
+    }
+  if (skirtMeters == 0) return;
+  const std::array starts{glm::ivec2(0, 0), glm::ivec2(cells, 0), glm::ivec2(cells, cells), glm::ivec2(0, cells)};
+  const std::array steps{glm::ivec2(1, 0), glm::ivec2(0, 1), glm::ivec2(-1, 0), glm::ivec2(0, -1)};
+  for (std::size_t side = 0; side < 4; ++side)
+    for (int k = 0; k < edge; ++k) {
+      const glm::ivec2 at = starts[side] + k * steps[side];
+      add(at.x, at.y, skirtMeters);
+      if (k == 0) continue;
+      const glm::ivec2 before = at - steps[side];
+      const int lower = edge * edge + static_cast<int>(side) * edge + k;
+      builder.quad(before.y * edge + before.x, lower - 1, lower, at.y * edge + at.x);
+    }
+}
+
+void addTriangle(MeshBuilder& builder, const AddVertex& add, int cells, double skirtMeters) {
+  for (int j = 0; j <= cells; ++j)
+    for (int i = 0; i + j <= cells; ++i) add(i, j, 0);
+  const auto index = [&](int i, int j) { return triangleGridIndex(cells, {i, j}); };
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i + j < cells; ++i) {
+      builder.triangle(index(i, j), index(i + 1, j), index(i, j + 1));
+      if (i + j + 1 < cells) builder.triangle(index(i + 1, j), index(i + 1, j + 1), index(i, j + 1));
+    }
+  if (skirtMeters == 0) return;
+  for (int edge = 0; edge < 3; ++edge)
+    for (int k = 0; k <= cells; ++k) {
+      const GridVertex at = edgeVertex(cells, edge, k);
+      add(at.i, at.j, skirtMeters);
+      if (k == 0) continue;
+      const GridVertex before = edgeVertex(cells, edge, k - 1);
+      const int lower = triangleGridSize(cells) + edge * (cells + 1) + k;
+      builder.quad(index(before.i, before.j), lower - 1, lower, index(at.i, at.j));
+    }
+}
+
 }  // namespace
 
 Tile sampleTile(const SampleSettings& settings) {
   const Sampler sampler(settings);
-  const int cells = settings.cellsPerEdge, edge = cells + 1;
-  const double width = nominalTileWidthMeters(settings.radiusMeters, settings.path.level());
+  const int cells = settings.cellsPerEdge;
+  const Scheme scheme = settings.path.scheme();
+  const double width = nominalTileWidthMeters(settings.radiusMeters, settings.path.level(), scheme);
   Tile tile;
   TileMetadata& m = tile.metadata;
   m.path = settings.path;
-  m.stepExponent = stepExponent(settings.radiusMeters, settings.path.level());
+  m.stepExponent = stepExponent(settings.radiusMeters, settings.path.level(), scheme);
   m.cellsPerEdge = cells;
   m.skirtMeters = settings.skirts ? static_cast<float>(0.01 * width) : 0.0f;
   m.heights = {-settings.roughness * width, settings.roughness * width};
@@ -116,26 +181,7 @@ Tile sampleTile(const SampleSettings& settings) {
     const auto shade = static_cast<std::uint8_t>(std::clamp(128 + 100 * lift, 0.0, 255.0));
     builder.add(top - drop * glm::normalize(top), sampler.normal(i, j), shade, m.stepExponent);
   };
-  for (int j = 0; j < edge; ++j)
-    for (int i = 0; i < edge; ++i) add(i, j, 0);
-  for (int j = 0; j < cells; ++j)
-    for (int i = 0; i < cells; ++i) {
-      const int a = j * edge + i;
-      builder.quad(a, a + 1, a + 1 + edge, a + edge);
-    }
-  if (settings.skirts) {
-    const std::array starts{glm::ivec2(0, 0), glm::ivec2(cells, 0), glm::ivec2(cells, cells), glm::ivec2(0, cells)};
-    const std::array steps{glm::ivec2(1, 0), glm::ivec2(0, 1), glm::ivec2(-1, 0), glm::ivec2(0, -1)};
-    for (std::size_t side = 0; side < 4; ++side)
-      for (int k = 0; k < edge; ++k) {
-        const glm::ivec2 at = starts[side] + k * steps[side];
-        add(at.x, at.y, m.skirtMeters);
-        if (k == 0) continue;
-        const glm::ivec2 before = at - steps[side];
-        const int lower = edge * edge + static_cast<int>(side) * edge + k;
-        builder.quad(before.y * edge + before.x, lower - 1, lower, at.y * edge + at.x);
-      }
-  }
+  (scheme == Scheme::Cube ? addSquare : addTriangle)(builder, add, cells, m.skirtMeters);
   m.origin = builder.takeOrigin();
   tile.mesh = builder.take();
   if (!settings.colors) tile.mesh.colors.clear();

@@ -5,6 +5,9 @@
 #include <random>
 
 #include "common/tiling/cube_sphere.h"
+#include "common/tiling/ico_sphere.h"
+#include "server/build/tile_topology.h"
+#include "tests/support/ico_points.h"
 
 namespace terrane {
 namespace {
@@ -28,6 +31,50 @@ TEST(GridDirections, AreCubeGridDirectionsToTheBit) {
                                                       (std::uint64_t{row} << levels) + j);
         const glm::dvec3 got(directions.x[j * side + i], directions.y[j * side + i], directions.z[j * side + i]);
         ASSERT_TRUE(got == expected) << "level " << level << " vertex " << i << ' ' << j;
+      }
+    }
+  }
+}
+
+TEST(GridDirections, AreIcoGridDirectionsToTheBit) {
+  std::mt19937_64 random(42);
+  GridDirections directions;
+  for (int round = 0; round < 90; ++round) {
+    const int levels = round % 2 == 0 ? 6 : 3, cells = 1 << levels;
+    const FacePath path = test::randomIcoTile(random, round % 31);
+    const TriangleTile tile = triangleTile(path);
+    gridDirections(path, cells, directions);
+    ASSERT_EQ(directions.x.size(), static_cast<std::size_t>(triangleGridSize(cells)));
+    for (int j = 0; j <= cells; ++j) {
+      for (int i = 0; i + j <= cells; ++i) {
+        const auto at = static_cast<std::size_t>(triangleGridIndex(cells, {i, j}));
+        const glm::dvec3 got(directions.x[at], directions.y[at], directions.z[at]);
+        ASSERT_TRUE(got == icoGridDirection(kIcoMap, path.face(), path.level() + levels,
+                                            gridVertexWeights(tile, cells, {i, j})))
+            << path.text() << " vertex " << i << ' ' << j;
+      }
+    }
+  }
+}
+
+TEST(GridDirections, AlongAnEdgeAreThoseOfTheGridInTheOrderOfTheSkirts) {
+  std::mt19937_64 random(43);
+  constexpr int kCells = 16;
+  for (const Scheme scheme : {Scheme::Cube, Scheme::Ico}) {
+    const auto topology = makeTileTopology(scheme, kCells);
+    for (int level = 0; level <= FacePath::kMaxLevel; ++level) {
+      FacePath path = FacePath::wholeFace(scheme, static_cast<int>(random() % 6));
+      while (path.level() < level) path = path.child(static_cast<int>(random() % 4));
+      GridDirections grid, edges;
+      gridDirections(path, kCells, grid);
+      for (std::size_t edge = 0; edge < topology->edgeCount(); ++edge)
+        appendEdgeDirections(path, static_cast<int>(edge), kCells, edges);
+      ASSERT_EQ(edges.x.size(), topology->skirtAnchors.size());
+      for (std::size_t k = 0; k < edges.x.size(); ++k) {
+        const std::uint32_t anchor = topology->skirtAnchors[k];
+        ASSERT_EQ(edges.x[k], grid.x[anchor]) << path.text() << " skirt vertex " << k;
+        ASSERT_EQ(edges.y[k], grid.y[anchor]) << path.text() << " skirt vertex " << k;
+        ASSERT_EQ(edges.z[k], grid.z[anchor]) << path.text() << " skirt vertex " << k;
       }
     }
   }

@@ -99,7 +99,7 @@ TEST(SceneFile, RangesAreInclusiveAtBothEnds) {
 }
 
 TEST(SceneFile, EveryShippedSceneIsValidAndBearsItsFilesName) {
-  EXPECT_THAT(shippedScenes(), testing::IsSupersetOf({"moon", "smooth"}));
+  EXPECT_THAT(shippedScenes(), testing::IsSupersetOf({"moon", "moon-ico", "smooth"}));
   for (const std::string& name : shippedScenes()) {
     const Result<Scene> scene = loadScene(name);
     ASSERT_TRUE(scene) << scene.error().text();
@@ -120,7 +120,7 @@ TEST(SceneFile, AnUnknownSceneNameListsTheShippedOnes) {
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().field, "--scene");
   EXPECT_THAT(scene.error().message, HasSubstr("did you mean \"moon\"?"));
-  EXPECT_THAT(scene.error().message, HasSubstr("moon, smooth"));
+  EXPECT_THAT(scene.error().message, HasSubstr("moon-ico, moon, smooth"));
 }
 
 TEST(SceneFile, AMissingFileADirectoryAndADeviceAreErrors) {
@@ -176,11 +176,31 @@ TEST(SceneFile, TheErrorsFieldIsTheKeysPath) {
             "moon.toml:6: body[0].radius: \"17 parsec\" has an unknown unit; allowed: mm, m, km");
 }
 
-TEST(SceneFile, TheIcoSchemeIsUnsupportedRatherThanWrong) {
-  const Result<Scene> scene = parseScene(replaced("[\"cube\"]", "[\"ico\"]"), "t.toml");
+TEST(SceneFile, ABodyIsTiledByTheCubeOrTheIcosahedron) {
+  for (const auto& [text, scheme] : {std::pair("[\"cube\"]", Scheme::Cube), std::pair("[\"ico\"]", Scheme::Ico)}) {
+    const Result<Scene> scene = parseScene(replaced("[\"cube\"]", text), "t.toml");
+    ASSERT_TRUE(scene) << scene.error().text();
+    EXPECT_EQ(scene->bodies.at(0).schemes, std::vector{scheme});
+  }
+}
+
+TEST(SceneFile, TwoSchemesAtOnceAreUnsupportedRatherThanWrong) {
+  const Result<Scene> scene = parseScene(replaced("[\"cube\"]", "[\"ico\", \"cube\"]"), "t.toml");
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().kind, ErrorKind::Unsupported);
-  EXPECT_THAT(scene.error().message, HasSubstr("\"cube\""));
+  EXPECT_EQ(scene.error().field, "body[0].schemes[1]");
+}
+
+TEST(SceneFile, MoonIcoIsTheMoonOnOtherTiles) {
+  const Result<Scene> moon = loadScene("moon"), ico = loadScene("moon-ico");
+  ASSERT_TRUE(moon && ico);
+  Body body = ico->bodies.at(0);
+  EXPECT_EQ(body.schemes, std::vector{Scheme::Ico});
+  body.schemes = moon->bodies.at(0).schemes;
+  EXPECT_EQ(body.radiusMeters, moon->bodies.at(0).radiusMeters);
+  EXPECT_EQ(body.field, moon->bodies.at(0).field);
+  EXPECT_EQ(body.fieldParameters, moon->bodies.at(0).fieldParameters);
+  EXPECT_EQ(body.seed, moon->bodies.at(0).seed);
 }
 
 TEST(SceneFile, BytesThatAreNotUtf8AreRefusedWithTheirLine) {

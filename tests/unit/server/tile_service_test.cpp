@@ -17,13 +17,14 @@ using testing::HasSubstr;
 
 constexpr std::string_view kRevision = "0123456789abcdef";
 
-SceneInfo twoBodies() {
+SceneInfo threeBodies() {
   SceneInfo scene{"test", "A <test> & more", {}, {}};
-  for (const char* name : {"moon", "rock"}) {
+  for (const char* name : {"moon", "rock", "ball"}) {
     BodyInfo body;
     body.name = name;
     body.revision = kRevision;
-    body.schemes = {Scheme::Cube};
+    body.selection.scheme = body.name == "ball" ? Scheme::Ico : Scheme::Cube;
+    body.schemes = {body.selection.scheme};
     body.selection.radiusMeters = 1737400;
     body.selection.maxLevel = 12;
     for (int level = 0; level <= 12; ++level) body.selection.geometricErrorMeters.push_back(4096.0 / (1 << level));
@@ -36,7 +37,7 @@ class TileServiceTest : public testing::Test {
  protected:
   void make(TileService::BuildTile build, TileService::Options options = {}) {
     options.threads = 1;
-    service.emplace(twoBodies(), std::move(build), options);
+    service.emplace(threeBodies(), std::move(build), options);
   }
   /// The tile's bytes are its body and path.
   void makePlain() {
@@ -121,6 +122,10 @@ TEST_F(TileServiceTest, EveryBadTileAddressNamesItsPartAndBuildsNothing) {
       {tile("moon/cube/1/0123012301230"), 404, "digits"},
       {tile("mars/cube/1"), 404, "body"},
       {tile("moon/ico/1"), 404, "scheme"},
+      {tile("ball/cube/1"), 404, "scheme"},
+      {tile("ball/ico/20"), 400, "face"},
+      {tile("ball/ico/19/4"), 400, "digits"},
+      {tile("ball/ico/19/0123012301230"), 404, "digits"},
       {tile("moon/tetra/1"), 400, "scheme"},
       {"/v1/%00", 400, "target"},
       {"/v1/" + std::string(3000, 'a'), 414, "target"},
@@ -137,6 +142,18 @@ TEST_F(TileServiceTest, EveryBadTileAddressNamesItsPartAndBuildsNothing) {
     EXPECT_EQ(response.tile, nullptr);
   }
   EXPECT_EQ(builds, 0);
+}
+
+TEST_F(TileServiceTest, AllFacesAndDigitsOfABodyOnTheIcosahedronAreServed) {
+  makePlain();
+  for (int face = 0; face < 20; ++face) {
+    const std::string path = "ico/" + std::to_string(face);
+    for (const std::string& digits : {std::string(), std::string("/0123"), std::string("/333333333333")}) {
+      const ServiceResponse response = ask(tile("ball/" + path + digits));
+      ASSERT_EQ(response.status, 200) << response.body;
+      EXPECT_EQ(std::string(response.tile->glb.begin(), response.tile->glb.end()), "2:" + path + digits);
+    }
+  }
 }
 
 TEST_F(TileServiceTest, TheFinestLevelIsServedAndTheNextIsNot) {
@@ -187,6 +204,8 @@ TEST_F(TileServiceTest, TheRootPageEscapesWhatTheSceneSays) {
   EXPECT_EQ(page.contentType, "text/html; charset=utf-8");
   EXPECT_THAT(page.body, HasSubstr("A &lt;test&gt; &amp; more"));
   EXPECT_THAT(page.body, HasSubstr("/v1/0123456789abcdef/rock/cube/5.glb"));
+  EXPECT_THAT(page.body, HasSubstr("/v1/0123456789abcdef/ball/ico/19.glb"));
+  EXPECT_THAT(page.body, testing::Not(HasSubstr("/ball/cube/")));
   EXPECT_THAT(page.body, HasSubstr("terrane-view --server"));
 }
 
