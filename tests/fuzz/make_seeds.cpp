@@ -22,18 +22,24 @@ void write(const std::filesystem::path& file, const std::string& text) {
   write(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
+void writeTile(const std::filesystem::path& corpus, const terrane::test::SampleSettings& sample) {
+  const terrane::Tile tile = terrane::test::sampleTile(sample);
+  for (const int speed : {0, 3, 4, 7, 10}) {
+    const terrane::DracoSettings settings{.speed = speed, .normalBits = 8};
+    const std::string name = std::string(schemeName(sample.path.scheme())) + std::to_string(sample.cellsPerEdge) +
+                             (sample.skirts ? "_skirts" : "") + (sample.colors ? "_colors" : "") + "_speed" +
+                             std::to_string(speed);
+    write(corpus / "fuzz_decode_draco_seeds" / name, terrane::encodeDraco(tile.mesh, settings).value().bytes);
+    write(corpus / "fuzz_decode_tile_seeds" / name, terrane::encodeTile(tile, settings).value());
+  }
+}
+
 void writeTiles(const std::filesystem::path& corpus) {
-  for (const int cells : {1, 2, 4, 16})
-    for (const bool skirts : {false, true})
-      for (const bool colors : {false, true})
-        for (const int speed : {0, 3, 4, 7, 10}) {
-          const auto tile = terrane::test::sampleTile({.cellsPerEdge = cells, .skirts = skirts, .colors = colors});
-          const terrane::DracoSettings settings{.speed = speed, .normalBits = 8};
-          const std::string name = std::to_string(cells) + (skirts ? "_skirts" : "") + (colors ? "_colors" : "") +
-                                   "_speed" + std::to_string(speed);
-          write(corpus / "fuzz_decode_draco_seeds" / name, terrane::encodeDraco(tile.mesh, settings).value().bytes);
-          write(corpus / "fuzz_decode_tile_seeds" / name, terrane::encodeTile(tile, settings).value());
-        }
+  for (const terrane::FacePath& path : terrane::test::kSamplePaths)
+    for (const int cells : {1, 2, 4, 16})
+      for (const bool skirts : {false, true})
+        for (const bool colors : {false, true})
+          writeTile(corpus, {.path = path, .cellsPerEdge = cells, .skirts = skirts, .colors = colors});
 }
 
 void writeScene(const std::filesystem::path& corpus) {

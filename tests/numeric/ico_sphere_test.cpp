@@ -116,6 +116,16 @@ TEST_P(IcoSphere, ATilesGridIsWhatItsVerticesAreOneByOne) {
     EXPECT_TRUE(sameBits(corners[0], glm::dvec3(x[0], y[0], z[0])));
     EXPECT_TRUE(sameBits(corners[1], glm::dvec3(x[64], y[64], z[64])));
     EXPECT_TRUE(sameBits(corners[2], glm::dvec3(x.back(), y.back(), z.back())));
+    std::vector<double> ex(static_cast<std::size_t>(cells) + 1), ey = ex, ez = ex;
+    for (int edge = 0; edge < 3; ++edge) {
+      icoEdgeDirections(GetParam(), path, edge, cells, {ex, ey, ez});
+      for (std::size_t k = 0; k < ex.size(); ++k) {
+        const auto at =
+            static_cast<std::size_t>(triangleGridIndex(cells, edgeVertex(cells, edge, static_cast<int>(k))));
+        ASSERT_TRUE(sameBits(glm::dvec3(ex[k], ey[k], ez[k]), glm::dvec3(x[at], y[at], z[at])))
+            << path.text() << " edge " << edge << " vertex " << k;
+      }
+    }
   }
   std::cout << "worst error " << worst << " of the bound\n";
   EXPECT_LE(worst, 1.0);

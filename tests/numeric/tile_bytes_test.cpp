@@ -22,6 +22,7 @@
 
 #include "server/build/tile_builder.h"
 #include "tests/support/child_process.h"
+#include "tests/support/ico_points.h"
 #include "tests/support/moon_body.h"
 
 namespace terrane {
@@ -45,12 +46,17 @@ std::size_t hashedTiles() {
   return count;
 }
 
-/// Of all levels, a quarter of them at a border of their face.
+/// Of both schemes in turn and all their levels, a quarter or more of them at a border of their face.
 std::vector<FacePath> tilePaths(std::size_t count) {
   std::mt19937_64 random(kSeed);
   std::vector<FacePath> paths;
+  const int finestIco = maxLevel(kMoonRadiusMeters, Scheme::Ico);
   for (std::size_t i = 0; i < count; ++i) {
-    const int level = static_cast<int>(i % (FacePath::kMaxLevel + 1));
+    const int level = static_cast<int>(i / 2 % (FacePath::kMaxLevel + 1));
+    if (i % 2 != 0) {
+      paths.push_back(test::randomIcoTile(random, std::min(level, finestIco)));
+      continue;
+    }
     const std::uint64_t last = (std::uint64_t{1} << level) - 1;
     const auto column = static_cast<std::uint32_t>(random() % 4 == 0 ? last : random() & last);
     const auto row = static_cast<std::uint32_t>(random() & last);
@@ -61,7 +67,7 @@ std::vector<FacePath> tilePaths(std::size_t count) {
 
 /// One hash of the bytes of all tiles, in the order of their paths.
 std::uint64_t hashOfTiles(std::size_t count, SimdPath simd, unsigned threads) {
-  const TileBuilder builder(testMoon(), {}, simd);
+  const TileBuilder cube(testMoon(), {}, simd), ico(tiledBy(Scheme::Ico, testMoon()), {}, simd);
   const std::vector<FacePath> paths = tilePaths(count);
   std::vector<std::uint64_t> hashes(paths.size());
   std::atomic<std::size_t> next{0};
@@ -70,7 +76,7 @@ std::uint64_t hashOfTiles(std::size_t count, SimdPath simd, unsigned threads) {
     for (unsigned i = 0; i < threads; ++i) {
       workers.emplace_back([&] {
         for (std::size_t k = next++; k < paths.size(); k = next++) {
-          const Result<BuiltTile> tile = builder.build(paths[k]);
+          const Result<BuiltTile> tile = (paths[k].scheme() == Scheme::Cube ? cube : ico).build(paths[k]);
           EXPECT_TRUE(tile.has_value()) << paths[k].text();
           if (tile.has_value()) hashes[k] = XXH3_64bits(tile->glb.data(), tile->glb.size());
         }

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "common/tiling/tile_bounds.h"
+#include "common/tiling/triangle_grid.h"
 #include "proto/gltf_tile.h"
 #include "server/build/grid_directions.h"
 #include "server/build/tile_topology.h"
@@ -92,6 +93,46 @@ TEST_P(TilesBuilt, HaveNormalsThatStandOnTheSurface) {
       control += glm::length(glm::normalize(position(tile, vertex)) - expected);
     }
     EXPECT_LT(sum, 0.7 * control) << "level " << level << ": no better than the sphere's normals";
+  }
+}
+
+LatticePoint latticePoint(const Tile& tile, std::size_t vertex) {
+  const std::uint16_t* offset = tile.mesh.offsets.data() + 3 * vertex;
+  return tile.metadata.origin + LatticePoint(offset[0], offset[1], offset[2]);
+}
+
+/// The vertices that a child's grid has in common with its parent's: the child's and the parent's grid index.
+std::vector<std::pair<std::size_t, std::size_t>> sharedWithParent(Scheme scheme, int digit) {
+  std::vector<std::pair<std::size_t, std::size_t>> shared;
+  for (int j = 0; j <= 64; j += 2) {
+    for (int i = 0; i <= (scheme == Scheme::Cube ? 64 : 64 - j); i += 2) {
+      if (scheme == Scheme::Cube) {
+        shared.emplace_back(j * 65 + i, ((digit >> 1) * 32 + j / 2) * 65 + (digit & 1) * 32 + i / 2);
+        continue;
+      }
+      const auto parents = parentGridVertices(digit, 64, {i, j});
+      EXPECT_EQ(parents[0], parents[1]);
+      shared.emplace_back(triangleGridIndex(64, {i, j}), triangleGridIndex(64, parents[0]));
+    }
+  }
+  return shared;
+}
+
+TEST_P(TilesBuilt, OfABareSphereMeetTheirParentsVerticesWithinAStep) {
+  const TileBuilder smooth(tiledBy(GetParam(), testBody(FieldKind::Sphere, kMoon, kBodySeed)), {}, bestSimdPath());
+  std::mt19937_64 random(kSeed);
+  for (int level = 0; level < smooth.info().selection.maxLevel; level += 3) {
+    const FacePath path = randomTile(random, level);
+    const Tile parent = mesh(smooth, path);
+    for (int digit = 0; digit < 4; ++digit) {
+      const Tile child = mesh(smooth, path.child(digit));
+      ASSERT_EQ(child.metadata.stepExponent + 1, parent.metadata.stepExponent);
+      for (const auto& [own, above] : sharedWithParent(GetParam(), digit)) {
+        // The same point: rounded by half a step of its own to either side, and by a whole one in the parent.
+        const LatticePoint apart = latticePoint(child, own) - latticePoint(parent, above) * std::int64_t{2};
+        for (int axis = 0; axis < 3; ++axis) ASSERT_LE(std::abs(apart[axis]), 1) << path.text() << " child " << digit;
+      }
+    }
   }
 }
 
