@@ -4,6 +4,7 @@
 // Thread-safe.
 //   /v1/scene.json
 //   /v1/{revision}/{body}/{scheme}/{face}[/{digits}].glb
+// Faces of the scheme cube are 0 to 5, of ico 0 to 19; digits of both 0 to 3 (face_path.h).
 
 #include <string>
 #include <string_view>

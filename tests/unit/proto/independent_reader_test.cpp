@@ -41,8 +41,12 @@ std::vector<T> valuesOf(const tinygltf::Model& model, const tinygltf::Primitive&
   return values;
 }
 
-TEST(IndependentReader, SeesTheVeryLatticePositionsThatWereEncoded) {
-  const Tile tile = test::sampleTile();
+class IndependentReader : public testing::TestWithParam<FacePath> {};
+INSTANTIATE_TEST_SUITE_P(Schemes, IndependentReader, testing::ValuesIn(test::kSamplePaths),
+                         [](const auto& path) { return std::string(schemeName(path.param.scheme())); });
+
+TEST_P(IndependentReader, SeesTheVeryLatticePositionsThatWereEncoded) {
+  const Tile tile = test::sampleTile({.path = GetParam()});
   const auto glb = encodeTile(tile, {});
   ASSERT_TRUE(glb) << glb.error().text();
 

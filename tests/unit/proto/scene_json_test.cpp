@@ -41,6 +41,15 @@ std::string refusedKey(const nlohmann::json& changed) {
   return read ? "accepted" : read.error().field;
 }
 
+TEST(SceneJson, ABodyOnTheIcosahedronIsSelectedFromItsTiles) {
+  SceneInfo wrote = scene();
+  wrote.bodies[0].schemes = {Scheme::Ico};
+  const auto read = readSceneJson(writeSceneJson(wrote));
+  ASSERT_TRUE(read.has_value()) << read.error().text();
+  EXPECT_EQ(read->bodies[0].schemes, std::vector{Scheme::Ico});
+  EXPECT_EQ(read->bodies[0].selection.scheme, Scheme::Ico);
+}
+
 TEST(SceneJson, ReadsBackWhatItWrote) {
   const SceneInfo wrote = scene();
   const auto read = readSceneJson(writeSceneJson(wrote));
