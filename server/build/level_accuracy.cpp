@@ -27,7 +27,8 @@ double sagMeters(double cell, double lowestRadius, double heightSpan) noexcept {
 }  // namespace
 
 double skirtMarginMeters(double radiusMeters, int level, Scheme scheme) noexcept {
-  return (3.0 * 0.8660254037844387 + 2.0 * kSkirtFlareSteps) * stepMeters(stepExponent(radiusMeters, level, scheme));
+  return (3.0 * 0.8660254037844387 + skirtCornerFlareSteps(scheme)) *
+         stepMeters(stepExponent(radiusMeters, level, scheme));
 }
 
 std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, Scheme scheme,

@@ -29,7 +29,8 @@ std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radi
                                            int cellsPerEdge, int maxLevel);
 
 /// How far a skirt hangs below the lowest of the edges that may meet it, so that the lattice's rounding opens nothing:
-/// half a step in each axis for a vertex of the tile, twice that for one of a coarser neighbour.
+/// half a step in each axis for a vertex of the tile, twice that for one of a coarser neighbour. And by a corner's
+/// lean, which takes the skirt's end along the edge by less than that: up ground of 45 degrees, as much too high.
 double skirtMarginMeters(double radiusMeters, int level, Scheme scheme) noexcept;
 
 }  // namespace terrane
