@@ -46,8 +46,8 @@ std::vector<DrawnTile> tilesOnTheirWay(std::span<const FacePath> paths, std::uin
   for (DrawnTile& tile : tiles) {
     const FacePath& path = tile.path;
     const auto isFiner = [&](Side side) {
-      const auto tile = path.neighbour(side);
-      return tile && drawnAt(cut, *tile) == DrawnThere::Finer;
+      const auto beside = path.neighbour(side);
+      return beside && drawnAt(cut, *beside) == DrawnThere::Finer;
     };
     tile.morph.own = randomShare(seed, {path});
     const auto set = [&](Side side, bool finer, float share) {
