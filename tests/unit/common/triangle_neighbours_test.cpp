@@ -98,7 +98,8 @@ TEST(TriangleNeighbours, AreAllTilesThatTouchAndVerticesEdgesAndTilesMakeASphere
     for (const FacePath& path : tiles) {
       for (int corner = 0; corner < 3; ++corner) {
         std::set<FacePath> named;
-        for (const TileCorner& tile : tilesAroundCorner(path, corner).tiles()) named.insert(tile.tile);
+        const TilesAroundCorner around = tilesAroundCorner(path, corner);
+        for (const TileCorner& tile : around.tiles()) named.insert(tile.tile);
         ASSERT_EQ(named, atPoint[cornerPoint(path, corner)]) << path.text();
       }
     }

@@ -77,7 +77,7 @@ std::vector<glm::dvec3> normalsOfMesh(const Tile& tile, std::size_t gridCount) {
 
 TEST_P(TilesBuilt, HaveNormalsThatStandOnTheSurface) {
   std::mt19937_64 random(kSeed);
-  const std::vector<std::uint32_t>& border = makeTileTopology(GetParam(), 64)->skirtAnchors;
+  const std::vector<std::uint32_t> border = makeTileTopology(GetParam(), 64)->skirtAnchors;
   for (int level = 2; level <= maxLevel(); level += 4) {
     const Tile tile = mesh(builder(), randomTile(random, level));
     const std::vector<glm::dvec3> fromMesh = normalsOfMesh(tile, gridCount());
