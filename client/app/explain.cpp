@@ -33,7 +33,8 @@ Result<Cost> measure(ViewSession& session, EffectKind kind) {
   std::vector<EffectCall> others;
   std::copy_if(all.begin(), all.end(), std::back_inserter(others),
                [&](const EffectCall& call) { return call.kind != kind; });
-  const RendererOptions options{.bodyRadiusMeters = session.body().selection.radiusMeters};
+  const RendererOptions options{.bodyRadiusMeters = session.body().selection.radiusMeters,
+                                .bodyScheme = session.body().selection.scheme};
   auto with = TileRenderer::create(all, options);
   if (!with) return with.error();
   auto without = TileRenderer::create(others, options);

@@ -15,7 +15,7 @@
 
 #include "client/controls/camera_controls.h"
 #include "common/command_line.h"
-#include "common/tiling/cube_sphere.h"
+#include "common/tiling/tile_at.h"
 #include "common/view/level_of_detail.h"
 #include "common/view/level_transitions.h"
 
@@ -39,16 +39,6 @@ void returnFreedMemory() {
 }
 
 void warn(const std::string& text) { complain("terrane-view", "warning: " + text); }
-
-std::uint32_t gridIndex(double coordinate, int level) {
-  const double cells = static_cast<double>(std::uint64_t{1} << level);
-  return static_cast<std::uint32_t>(std::clamp(std::floor((coordinate + 1) / 2 * cells), 0.0, cells - 1));
-}
-
-FacePath tileUnder(const glm::dvec3& direction, int level) {
-  const FaceCoordinates at = cubeFaceCoordinates(direction);
-  return FacePath::cubeTile(at.face, level, gridIndex(at.s, level), gridIndex(at.t, level));
-}
 
 }  // namespace
 
@@ -124,7 +114,9 @@ Result<bool> ViewSession::ready() {
                      fmt::format("the scene \"{}\" has no \"{}\": it has {}", scene->name, s.options.body, names));
   }
   const std::size_t body = s.options.body.empty() ? 0 : static_cast<std::size_t>(found - scene->bodies.begin());
-  auto renderer = TileRenderer::create(effects(), {.bodyRadiusMeters = scene->bodies[body].selection.radiusMeters});
+  const SelectionBody& viewed = scene->bodies[body].selection;
+  auto renderer =
+      TileRenderer::create(effects(), {.bodyRadiusMeters = viewed.radiusMeters, .bodyScheme = viewed.scheme});
   if (!renderer) return renderer.error();
   s.renderer = std::move(*renderer);
   s.stream->selectBody(body);
@@ -207,7 +199,7 @@ std::vector<WantedTile> ViewSession::State::groundChain(double allowedPixels) co
   for (int level = 0; level <= body.maxLevel; ++level) {
     const double error = body.geometricErrorMeters[static_cast<std::size_t>(level)];
     const bool last = error <= allowedMeters || level == body.maxLevel;
-    chain.push_back({tileUnder(direction, level), error * pixelsPerRadian(camera) / height, last});
+    chain.push_back({tileAt(body.scheme, direction, level), error * pixelsPerRadian(camera) / height, last});
     if (last) break;
   }
   return chain;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 
+#include "client/dust/grain_cells.h"
 #include "common/numerics/strict_math.h"
-#include "common/tiling/cube_sphere.h"
 #include "common/tiling/lattice.h"
 
 namespace terrane {
@@ -13,9 +13,9 @@ namespace {
 
 /// Diameters of a class, as shares of its cell: one octave, so that classes follow one another without gap or overlap.
 constexpr double kLeastShare = 0.2, kMiddleShare = 0.283, kMostShare = 0.4;
-/// Of the mean share of a cell that a grain covers when numbers fall with the cube of size, pi/4 E[d^2].
+/// What a grain covers on average when numbers fall with the cube of size, pi/4 E[d^2], in squares of a cell's width.
 constexpr double kMeanCover = 0.0581;
-static_assert(kMostCover < kMeanCover);
+static_assert(kMostCover < kMeanCover && SquareGrainCell::kAreaInWidths <= 1 && TriangleGrainCell::kAreaInWidths <= 1);
 /// Classes of any body: a cell of the coarsest is a 64th of a face, the finest is bounded by what 2^52 can count.
 constexpr int kLastClass = 40;
 /// Broken rock has the more cover the smaller it is: of an octave's, the octave above has so much.
@@ -34,9 +34,8 @@ std::uint64_t mixed(std::uint64_t h) noexcept {
 /// Numbers in [0, 1), one after the other, from one cell (the sequence of splitmix64).
 class CellRandom {
  public:
-  CellRandom(int face, int classLevel, std::uint64_t column, std::uint64_t row) noexcept
-      : state_(mixed(mixed(column + 0x9E3779B97F4A7C15ull * static_cast<std::uint64_t>(8 * classLevel + face + 1)) ^
-                     (row + 0xD1B54A32D192ED03ull))) {}
+  CellRandom(std::uint64_t stream, std::uint64_t column, std::uint64_t row) noexcept
+      : state_(mixed(mixed(column + 0x9E3779B97F4A7C15ull * stream) ^ (row + 0xD1B54A32D192ED03ull))) {}
   /// 24 bits: exact in float too.
   double next() noexcept {
     state_ += 0x9E3779B97F4A7C15ull;
@@ -97,8 +96,8 @@ void setTurn(CellRandom& random, Grain& grain) noexcept {
 
 }  // namespace
 
-GrainField::GrainField(const DustSettings& settings, double radiusMeters) noexcept
-    : settings_(settings), radiusMeters_(radiusMeters) {
+GrainField::GrainField(const DustSettings& settings, double radiusMeters, Scheme scheme) noexcept
+    : settings_(settings), radiusMeters_(radiusMeters), scheme_(scheme) {
   settings_.cover = std::clamp(settings.cover, 0.0, kMostCover);
   if (!(settings_.cover > 0)) return;
   const auto middle = [this](int classLevel) { return kMiddleShare * cellMeters(classLevel); };
@@ -108,55 +107,54 @@ GrainField::GrainField(const DustSettings& settings, double radiusMeters) noexce
 }
 
 double GrainField::cellMeters(int classLevel) const noexcept {
-  return nominalTileWidthMeters(radiusMeters_, classLevel) / kGrainCells;
+  return nominalTileWidthMeters(radiusMeters_, classLevel, scheme_) / kGrainCells;
 }
 
 double GrainField::largestMeters(int classLevel) const noexcept {
   return std::min(kMostShare * cellMeters(classLevel), settings_.largestMeters);
 }
 
-void GrainField::collect(const FacePath& tile, int classLevel, std::vector<Grain>& grains) const {
-  if (classLevel < coarsest_ || classLevel > finest_) return;
-  const int down = tile.level() - classLevel;  // a cell of the class is 2^down cells of the tile's mesh wide
-  const double cell = cellMeters(classLevel), span = std::ldexp(1.0, down);
-  const std::uint64_t firstColumn = (std::uint64_t{tile.column()} * kGrainCells) >> down,
-                      firstRow = (std::uint64_t{tile.row()} * kGrainCells) >> down;
-  const std::uint64_t count = std::max<std::uint64_t>(1, kGrainCells >> std::min(down, 30));
+template <class Cell>
+void GrainField::collectFrom(const FacePath& tile, int classLevel, std::vector<Grain>& grains) const {
+  const double cell = cellMeters(classLevel), patchMeters = kPatchCells * cell;
   double cover = settings_.cover;
   for (int finer = classLevel; finer < finest_; ++finer) cover *= kCoverFalls;
-  const double toFace = std::ldexp(2.0, -classLevel) / kGrainCells, patchMeters = kPatchCells * cell;
-  for (std::uint64_t row = firstRow; row < firstRow + count; ++row) {
-    for (std::uint64_t column = firstColumn; column < firstColumn + count; ++column) {
-      CellRandom random(tile.face(), classLevel, column, row);
-      const double chance = random.next() * kMeanCover;
-      if (chance >= kDensest * cover) continue;
-      const double u = random.next();
-      const double share =
-          kLeastShare / std::sqrt(1 - u * (1 - (kLeastShare / kMostShare) * (kLeastShare / kMostShare)));
-      const double diameter = share * cell;
-      if (diameter < settings_.smallestMeters || diameter > settings_.largestMeters) continue;
-      // It stays within its cell, so that neighbours of a class do not overlap.
-      const double inColumn = share / 2 + (1 - share) * random.next(), inRow = share / 2 + (1 - share) * random.next();
-      const double columns = static_cast<double>(column) + inColumn, rows = static_cast<double>(row) + inRow;
-      Grain grain;
-      grain.cells = {columns * span - std::ldexp(tile.column(), 6), rows * span - std::ldexp(tile.row(), 6)};
-      if (grain.cells.x < 0 || grain.cells.y < 0 || grain.cells.x >= kGrainCells || grain.cells.y >= kGrainCells)
-        continue;
-      const glm::dvec3 at =
-          cubeDirection(tile.face(), columns * toFace - 1, rows * toFace - 1) * (radiusMeters_ / patchMeters);
-      const double patch = 0.6 * patchValue(at) + 0.4 * patchValue(4.0 * at);
-      if (chance >= cover * density(patch)) continue;
-      grain.classLevel = classLevel;
-      grain.column = column;
-      grain.row = row;
-      grain.diameterMeters = static_cast<float>(diameter);
-      grain.flattening = static_cast<float>(0.55 + 0.35 * random.next());
-      grain.centerHeight = static_cast<float>(-0.35 + 0.75 * random.next());
-      grain.shade = static_cast<float>(0.75 + 0.5 * random.next());
-      grain.variant = static_cast<int>(kGrainVariants * random.next());
-      setTurn(random, grain);
-      grains.push_back(grain);
-    }
+  Cell::eachOf(tile, classLevel, [&](const Cell& at) {
+    CellRandom random(at.stream(), at.column, at.row);
+    const double chance = random.next() * kMeanCover / Cell::kAreaInWidths;
+    if (chance >= kDensest * cover) return;
+    const double u = random.next();
+    const double share = kLeastShare / std::sqrt(1 - u * (1 - (kLeastShare / kMostShare) * (kLeastShare / kMostShare)));
+    const double diameter = share * cell;
+    if (diameter < settings_.smallestMeters || diameter > settings_.largestMeters) return;
+    // It stays within its cell, so that neighbours of a class do not overlap.
+    const double first = random.next(), second = random.next();
+    const auto place = at.place(tile, share, first, second);
+    if (!place) return;
+    const glm::dvec3 patchAt = place->direction * (radiusMeters_ / patchMeters);
+    const double patch = 0.6 * patchValue(patchAt) + 0.4 * patchValue(4.0 * patchAt);
+    if (chance >= cover * density(patch)) return;
+    Grain grain;
+    grain.cells = place->cells;
+    grain.classLevel = classLevel;
+    grain.column = at.column;
+    grain.row = at.row;
+    grain.diameterMeters = static_cast<float>(diameter);
+    grain.flattening = static_cast<float>(0.55 + 0.35 * random.next());
+    grain.centerHeight = static_cast<float>(-0.35 + 0.75 * random.next());
+    grain.shade = static_cast<float>(0.75 + 0.5 * random.next());
+    grain.variant = static_cast<int>(kGrainVariants * random.next());
+    setTurn(random, grain);
+    grains.push_back(grain);
+  });
+}
+
+void GrainField::collect(const FacePath& tile, int classLevel, std::vector<Grain>& grains) const {
+  if (classLevel < coarsest_ || classLevel > finest_) return;
+  if (scheme_ == Scheme::Cube) {
+    collectFrom<SquareGrainCell>(tile, classLevel, grains);
+  } else {
+    collectFrom<TriangleGrainCell>(tile, classLevel, grains);
   }
 }
 

@@ -109,6 +109,7 @@ void setUniform(Uniform uniform, float value) { glUniform1f(uniform.location, va
 void setUniform(Uniform uniform, const glm::vec2& value) { glUniform2fv(uniform.location, 1, glm::value_ptr(value)); }
 void setUniform(Uniform uniform, const glm::vec3& value) { glUniform3fv(uniform.location, 1, glm::value_ptr(value)); }
 void setUniform(Uniform uniform, const glm::vec4& value) { glUniform4fv(uniform.location, 1, glm::value_ptr(value)); }
+void setUniform(Uniform uniform, const glm::ivec2& value) { glUniform2iv(uniform.location, 1, glm::value_ptr(value)); }
 void setUniform(Uniform uniform, const glm::ivec3& value) { glUniform3iv(uniform.location, 1, glm::value_ptr(value)); }
 void setUniform(Uniform uniform, std::span<const float> values) {
   glUniform1fv(uniform.location, static_cast<GLsizei>(values.size()), values.data());

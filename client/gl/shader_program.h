@@ -53,6 +53,7 @@ void setUniform(Uniform uniform, float value);
 void setUniform(Uniform uniform, const glm::vec2& value);
 void setUniform(Uniform uniform, const glm::vec3& value);
 void setUniform(Uniform uniform, const glm::vec4& value);
+void setUniform(Uniform uniform, const glm::ivec2& value);
 void setUniform(Uniform uniform, const glm::ivec3& value);
 void setUniform(Uniform uniform, const glm::mat3& value);
 void setUniform(Uniform uniform, int value);

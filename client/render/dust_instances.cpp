@@ -63,7 +63,7 @@ void DustInstances::gather(const Camera& camera, std::span<const TileDraw> tiles
     if (found == kept_.end()) found = kept_.emplace(tile.path, Kept{TileGrains(field_, draw)}).first;
     Kept& kept = found->second;
     kept.frame = frame_;
-    kept.grains.moveTo(draw.byPlace);
+    kept.grains.moveTo(draw.byBorders);
     for (const GrainRun& run : kept.grains.runs())
       if (run.largestMeters > unseenMeters) append(view, kept.grains, run);
   }

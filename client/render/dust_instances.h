@@ -19,8 +19,8 @@ class DustInstances {
  public:
   /// relative: roots are made relative to the camera here, in double, for a GPU that cannot; their low parts are then
   /// 0.
-  DustInstances(const DustSettings& settings, double bodyRadiusMeters, bool relative) noexcept
-      : field_(settings, bodyRadiusMeters), relative_(relative) {}
+  DustInstances(const DustSettings& settings, double bodyRadiusMeters, Scheme bodyScheme, bool relative) noexcept
+      : field_(settings, bodyRadiusMeters, bodyScheme), relative_(relative) {}
 
   void gather(const Camera& camera, std::span<const TileDraw> tiles);
 

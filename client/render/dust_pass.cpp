@@ -104,7 +104,7 @@ class DustPass final : public EffectPass {
   DustPass(const DustSettings& settings, const PassContext& context, GrainProgram grains, GrainProgram shadows)
       : effects_(context.effects),
         relative_(!context.selfTest.twoSumExact),
-        gathered_(settings, context.bodyRadiusMeters, relative_),
+        gathered_(settings, context.bodyRadiusMeters, context.bodyScheme, relative_),
         grains_(std::move(grains)),
         shadows_(std::move(shadows)) {
     for (int mesh = 0; mesh < kGrainMeshes; ++mesh) batches_[static_cast<std::size_t>(mesh)].make(pebbleMesh(mesh));

@@ -18,6 +18,7 @@ struct PassContext {
   const SelfTestReport& selfTest;
   const EffectList& effects;  ///< all of the scene's, for programs that are lit as the ground is
   double bodyRadiusMeters = 0;
+  Scheme bodyScheme = Scheme::Cube;
 };
 
 struct PassStats {

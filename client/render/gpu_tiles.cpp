@@ -32,14 +32,20 @@ constexpr std::array kRelativeAttributes{
     gl::VertexAttribute{kRelativeLocation, 3, Component::F32, Conversion::Float, 0},
 };
 
-int surfaceVertexCount(const TileMetadata& metadata) {
-  return (metadata.cellsPerEdge + 1) * (metadata.cellsPerEdge + 1);
+/// GpuVertex::place by grid index, of the grid's own vertices. Those of a mesh that is no complete grid mean nothing.
+std::vector<std::uint16_t> placesOf(const TileGrid& grid) {
+  std::vector<std::uint16_t> places;
+  places.reserve(static_cast<std::size_t>(grid.vertexCount()));
+  for (int j = 0; j <= grid.cells; ++j)
+    for (int i = 0; i <= grid.rowEnd(j); ++i)
+      places.push_back(static_cast<std::uint16_t>((i & 0xFF) | (j & 0xFF) << 8));
+  return places;
 }
 
 /// order: MeshLayout's.
 std::vector<GpuVertex> packVertices(const Tile& tile, const std::vector<std::uint32_t>& order) {
   const TileMesh& mesh = tile.mesh;
-  const int surface = surfaceVertexCount(tile.metadata);
+  const std::vector<std::uint16_t> places = placesOf({tile.metadata.path.scheme(), tile.metadata.cellsPerEdge});
   static const std::array<std::uint8_t, 256> displayBytes = makeDisplayBytes();
   std::vector<GpuVertex> vertices(mesh.vertexCount());
   for (std::size_t place = 0; place < vertices.size(); ++place) {
@@ -51,7 +57,8 @@ std::vector<GpuVertex> packVertices(const Tile& tile, const std::vector<std::uin
       vertex.normal[c] = static_cast<std::int16_t>(std::lround(normal * 32767.0f));
       vertex.color[c] = displayBytes[mesh.colors.empty() ? kPlainColor : mesh.colors[3 * i + c]];
     }
-    vertex.skirt = mesh.gridIndices[i] >= surface ? 1 : 0;
+    const std::size_t grid = mesh.gridIndices[i];
+    vertex.place = grid < places.size() ? places[grid] : kSkirtPlace;
   }
   return vertices;
 }
@@ -78,7 +85,7 @@ void GpuTile::streamRelative(std::span<const float> positions) {
   if (!relativeArray_) {
     relativePositions_ = std::make_unique<gl::Buffer>();
     relativeArray_ = std::make_unique<gl::VertexArray>();
-    relativeArray_->attach(vertices, sizeof(GpuVertex), std::span(kAttributes).subspan(1));
+    relativeArray_->attach(vertices, sizeof(GpuVertex), kAttributes);
     relativeArray_->attach(*relativePositions_, 3 * sizeof(float), kRelativeAttributes);
   }
   relativeArray_->bind();
@@ -89,10 +96,10 @@ std::size_t GpuTile::bytes() const noexcept {
   return vertices.bytes() + (relativePositions_ ? relativePositions_->bytes() : 0);
 }
 
-std::shared_ptr<TileIndices> GpuTiles::gridIndices(int cells, std::size_t& bytesTaken) {
-  std::weak_ptr<TileIndices>& slot = grids_[cells];
+std::shared_ptr<TileIndices> GpuTiles::gridIndices(const TileGrid& grid, std::size_t& bytesTaken) {
+  std::weak_ptr<TileIndices>& slot = grids_[grid];
   if (auto held = slot.lock()) return held;
-  auto made = std::make_shared<TileIndices>(cells);
+  auto made = std::make_shared<TileIndices>(grid);
   bytesTaken += made->bytes();
   slot = made;
   return made;
@@ -100,17 +107,17 @@ std::shared_ptr<TileIndices> GpuTiles::gridIndices(int cells, std::size_t& bytes
 
 std::shared_ptr<const MeshLayout> GpuTiles::layoutFor(const Tile& tile, std::size_t& bytesTaken) {
   const TileMesh& mesh = tile.mesh;
-  const int cells = tile.metadata.cellsPerEdge;
-  const XXH128_hash_t grid = XXH3_128bits(mesh.gridIndices.data(), mesh.gridIndices.size() * sizeof(std::uint16_t));
+  const TileGrid grid{tile.metadata.path.scheme(), tile.metadata.cellsPerEdge};
+  const XXH128_hash_t places = XXH3_128bits(mesh.gridIndices.data(), mesh.gridIndices.size() * sizeof(std::uint16_t));
   const XXH128_hash_t hash = XXH3_128bits_withSeed(mesh.triangles.data(), mesh.triangles.size() * sizeof(std::uint32_t),
-                                                   grid.low64 ^ static_cast<std::uint64_t>(cells));
-  std::weak_ptr<const MeshLayout>& slot = layouts_[{hash.low64 ^ grid.high64, hash.high64}];
+                                                   places.low64 ^ static_cast<std::uint64_t>(grid.cells));
+  std::weak_ptr<const MeshLayout>& slot = layouts_[{hash.low64 ^ places.high64, hash.high64}];
   if (auto held = slot.lock()) return held;
 
   auto made = std::make_shared<MeshLayout>();
-  if (auto order = verticesInGridOrder(mesh, cells)) {
+  if (auto order = verticesInGridOrder(mesh, grid)) {
     made->order = std::move(*order);
-    made->indices = gridIndices(cells, bytesTaken);
+    made->indices = gridIndices(grid, bytesTaken);
   } else {
     made->indices = std::make_shared<TileIndices>(tile);
     bytesTaken += made->indices->bytes();

@@ -1,13 +1,14 @@
 #pragma once
 // The tiles on the GPU: one interleaved vertex buffer a tile, and index buffers that tiles of equal connectivity share.
 // A complete grid's vertices lie in grid order, whatever order they came in: then all such tiles share their indices,
-// and a vertex' number tells where in the grid it is. GL thread only.
+// and where in the grid a vertex is tells its number. GL thread only.
 //
 // Nothing of a tile stays in main memory but its metadata; a placement that needs the offsets on the CPU reads them
 // back once.
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -23,10 +24,13 @@ namespace terrane {
 /// from them.
 inline constexpr double kDisplayGamma = 2.2;
 
+/// GpuVertex::place of a vertex that is of no grid.
+inline constexpr std::uint16_t kSkirtPlace = 0xFFFF;
+
 /// One vertex as it lies on the GPU.
 struct GpuVertex {
   std::array<std::uint16_t, 3> offset{};  ///< steps from the tile's origin
-  std::uint16_t skirt = 0;                ///< 1 on a skirt
+  std::uint16_t place = 0;                ///< column + 256 row in the grid, or kSkirtPlace
   std::array<std::int16_t, 4> normal{};   ///< of 32767; the fourth pads
   /// (reflectance / kColorScale)^(1 / kDisplayGamma), of 255; the fourth pads.
   std::array<std::uint8_t, 4> color{};
@@ -73,7 +77,7 @@ class GpuTiles {
 
  private:
   std::shared_ptr<const MeshLayout> layoutFor(const Tile& tile, std::size_t& bytesTaken);
-  std::shared_ptr<TileIndices> gridIndices(int cells, std::size_t& bytesTaken);
+  std::shared_ptr<TileIndices> gridIndices(const TileGrid& grid, std::size_t& bytesTaken);
 
   struct Fingerprint {
     std::uint64_t low = 0, high = 0;
@@ -85,7 +89,7 @@ class GpuTiles {
   std::uint64_t uploads_ = 0;
   std::unordered_map<FacePath, std::unique_ptr<GpuTile>> tiles_;
   std::unordered_map<Fingerprint, std::weak_ptr<const MeshLayout>, FingerprintHash> layouts_;
-  std::unordered_map<int, std::weak_ptr<TileIndices>> grids_;  ///< by cells of an edge
+  std::map<TileGrid, std::weak_ptr<TileIndices>> grids_;
 };
 
 }  // namespace terrane

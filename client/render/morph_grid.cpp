@@ -8,14 +8,17 @@ constexpr std::int64_t kMaxOriginSteps = std::int64_t{1} << 20;
 
 }  // namespace
 
+glm::ivec2 MorphGrid::firstInHalfCells() const noexcept {
+  const auto [first, second] = grid.parentVertices(digit, {0, 0});
+  return {first.i + second.i, first.j + second.j};
+}
+
 std::optional<MorphGrid> morphGrid(const TileMetadata& tile, const TileMetadata& parent) noexcept {
   if (tile.cellsPerEdge != parent.cellsPerEdge || tile.cellsPerEdge % 2 != 0) return std::nullopt;
   if (parent.stepExponent != tile.stepExponent + 1) return std::nullopt;
   MorphGrid grid;
-  grid.side = tile.cellsPerEdge + 1;
-  const int digit = tile.path.digit(tile.path.level() - 1), half = tile.cellsPerEdge / 2;
-  grid.firstColumn = (digit & 1) != 0 ? half : 0;
-  grid.firstRow = (digit & 2) != 0 ? half : 0;
+  grid.grid = {tile.path.scheme(), tile.cellsPerEdge};
+  grid.digit = tile.path.digit(tile.path.level() - 1);
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t apart = 2 * parent.origin[axis] - tile.origin[axis];
     if (apart > kMaxOriginSteps || apart < -kMaxOriginSteps) return std::nullopt;

@@ -10,12 +10,12 @@ void relativeMorphed(const TileDraw& draw, const glm::dvec3& cameraBody, std::ve
   const std::vector<std::uint16_t>&own = draw.tile->heldOffsets(), &parents = draw.parent->heldOffsets();
   const double step = stepMeters(draw.tile->metadata.stepExponent);
   const LatticePoint& origin = draw.tile->metadata.origin;
-  const int side = draw.grid.side;
-  for (int j = 0; j < side; ++j) {
-    for (int i = 0; i < side; ++i) {
-      const auto at = 3 * static_cast<std::size_t>(j * side + i);
-      const double morph = static_cast<double>(morphAt(draw.byPlace, side, i, j));
-      const ParentVertices target = draw.grid.parentVertices(i, j);
+  const TileGrid& grid = draw.grid.grid;
+  for (int j = 0; j <= grid.cells; ++j) {
+    for (int i = 0; i <= grid.rowEnd(j); ++i) {
+      const auto at = 3 * static_cast<std::size_t>(grid.index({i, j}));
+      const double morph = static_cast<double>(draw.byBorders[grid.borders({i, j})]);
+      const ParentVertices target = draw.grid.parentVertices({i, j});
       const auto first = 3 * static_cast<std::size_t>(target.first),
                  second = 3 * static_cast<std::size_t>(target.second);
       for (int axis = 0; axis < 3; ++axis) {
@@ -48,9 +48,9 @@ std::optional<TileDraw> makeTileDraw(GpuTiles& tiles, const DrawnTile& drawn, bo
     return draw;
   }
   draw.grid = *grid;
-  draw.byPlace = morphByPlace(drawn.morph);
+  draw.byBorders = morphByBorders(draw.grid.grid, drawn.morph);
   draw.coarserEdges = drawn.morph.coarserEdges;
-  if (std::ranges::any_of(draw.byPlace, [](float value) { return value != 0; })) draw.parent = parent;
+  if (std::ranges::any_of(draw.byBorders, [](float value) { return value != 0; })) draw.parent = parent;
   return draw;
 }
 

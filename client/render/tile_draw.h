@@ -12,9 +12,9 @@ namespace terrane {
 
 struct TileDraw {
   GpuTile* tile = nullptr;
-  GpuTile* parent = nullptr;  ///< null: drawn as it is; grid and byPlace then mean nothing
+  GpuTile* parent = nullptr;  ///< null: drawn as it is; grid and byBorders then mean nothing
   MorphGrid grid;
-  std::array<float, 9> byPlace{};
+  MorphByBorders byBorders{};
   unsigned coarserEdges = 0;
   bool skirts = false;
 };

@@ -45,18 +45,24 @@ std::optional<InTriangle> within(const std::array<glm::ivec2, 3>& corners, const
 
 /// The triangle of the drawn mesh that a point of the grid lies in. Beside a coarser tile the triangles are stitched,
 /// and that of the next cell may reach into this one.
-InTriangle triangleAt(int cells, unsigned coarserEdges, const glm::dvec2& at) {
-  const glm::ivec2 cell(std::min(static_cast<int>(at.x), cells - 1), std::min(static_cast<int>(at.y), cells - 1));
-  const auto corner = [&](int i, int j) {
-    const int vertex = stitchedVertex(cells, coarserEdges, i, j);
-    return glm::ivec2(vertex % (cells + 1), vertex / (cells + 1));
+InTriangle triangleAt(const TileGrid& grid, unsigned coarserEdges, const glm::dvec2& at) {
+  const int last = grid.cells - 1;
+  const glm::ivec2 cell(std::min(static_cast<int>(at.x), last), std::min(static_cast<int>(at.y), last));
+  std::optional<InTriangle> found;
+  const auto look = [&](const GridVertex& a, const GridVertex& b, const GridVertex& c) {
+    if (found) return;
+    std::array<glm::ivec2, 3> corners{};
+    std::ranges::transform(std::array{a, b, c}, corners.begin(), [&](const GridVertex& corner) {
+      const GridVertex drawn = stitchedVertex(grid, coarserEdges, corner);
+      return glm::ivec2(drawn.i, drawn.j);
+    });
+    found = within(corners, at);
   };
-  for (const glm::ivec2 step : {glm::ivec2(0, 0), {1, 0}, {0, 1}, {1, 1}, {-1, 0}, {0, -1}}) {
+  for (const glm::ivec2 step :
+       {glm::ivec2(0, 0), {1, 0}, {0, 1}, {1, 1}, {-1, 0}, {0, -1}, {-1, 1}, {1, -1}, {-1, -1}}) {
     const int i = cell.x + step.x, j = cell.y + step.y;
-    if (i < 0 || j < 0 || i >= cells || j >= cells) continue;
-    for (const auto& corners : {std::array{corner(i, j), corner(i + 1, j), corner(i + 1, j + 1)},
-                                std::array{corner(i, j), corner(i + 1, j + 1), corner(i, j + 1)}})
-      if (const auto found = within(corners, at)) return *found;
+    if (i >= 0 && j >= 0 && j < grid.cells && i < grid.rowEnd(j)) grid.eachTriangle(i, j, look);
+    if (found) return *found;
   }
   // A point on an edge that rounding puts outside of both: any of its corners will do.
   return {{cell, cell, cell}, {1, 0, 0}};
@@ -73,23 +79,22 @@ class TileGrains::Surface {
 
   Ends at(const glm::dvec2& cells) const {
     const TileMetadata& tile = draw_.tile->metadata;
-    const InTriangle triangle = triangleAt(tile.cellsPerEdge, draw_.coarserEdges, cells);
-    const int side = tile.cellsPerEdge + 1;
+    const TileGrid grid{tile.path.scheme(), tile.cellsPerEdge};
+    const InTriangle triangle = triangleAt(grid, draw_.coarserEdges, cells);
     const double step = stepMeters(tile.stepExponent);
     Ends ends;
     glm::dvec3 offset(0.0);
     for (std::size_t k = 0; k < 3; ++k) {
-      const glm::ivec2 corner = triangle.corners[k];
-      const GpuVertex& vertex = own_[static_cast<std::size_t>(corner.y * side + corner.x)];
+      const GridVertex corner{triangle.corners[k].x, triangle.corners[k].y};
+      const GpuVertex& vertex = own_[static_cast<std::size_t>(grid.index(corner))];
       const auto weight = static_cast<float>(triangle.weights[k]);
       offset += glm::dvec3(offsetOf(vertex)) * triangle.weights[k];
       ends.normal[0] += weight * normalOf(vertex);
       ends.color[0] += weight * colorOf(vertex);
       ends.weight[k] = weight;
-      const auto place = [side](int i) { return i == 0 ? 0 : i == side - 1 ? 2 : 1; };
-      ends.place[k] = static_cast<std::uint8_t>(3 * place(corner.y) + place(corner.x));
+      ends.borders[k] = static_cast<std::uint8_t>(grid.borders(corner));
       if (draw_.parent == nullptr) continue;
-      const ParentVertices to = draw_.grid.parentVertices(corner.x, corner.y);
+      const ParentVertices to = draw_.grid.parentVertices(corner);
       const GpuVertex &first = parents_[static_cast<std::size_t>(to.first)],
                       &second = parents_[static_cast<std::size_t>(to.second)];
       const glm::ivec3 way = draw_.grid.parentMinusOwn + offsetOf(first) + offsetOf(second) - offsetOf(vertex);
@@ -133,8 +138,8 @@ TileGrains::TileGrains(const GrainField& field, const TileDraw& draw)
     instance.shade = toByte(grains_[i].shade * 127.5f);
     instance.flattening = toByte(grains_[i].flattening * 255.0f);
   }
-  byPlace_.fill(-1.0f);
-  moveTo(draw.byPlace);
+  byBorders_.fill(-1.0f);
+  moveTo(draw.byBorders);
 }
 
 bool TileGrains::fits(const TileDraw& draw) const noexcept {
@@ -143,16 +148,16 @@ bool TileGrains::fits(const TileDraw& draw) const noexcept {
          coarserEdges_ == draw.coarserEdges;
 }
 
-void TileGrains::moveTo(const std::array<float, 9>& byPlace) {
-  if (byPlace == byPlace_) return;
-  byPlace_ = byPlace;
+void TileGrains::moveTo(const MorphByBorders& byBorders) {
+  if (byBorders == byBorders_) return;
+  byBorders_ = byBorders;
   for (std::size_t i = 0; i < grains_.size(); ++i) {
     const Grain& grain = grains_[i];
     const Ends& ends = ends_[i];
     glm::dvec3 root = ends.own;
     float morph = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const float value = byPlace[ends.place[k]];
+      const float value = byBorders[ends.borders[k]];
       root += glm::dvec3(ends.way[k]) * static_cast<double>(value);
       morph += ends.weight[k] * value;
     }

@@ -52,7 +52,7 @@ class TileGrains {
   TileGrains(const GrainField& field, const TileDraw& draw);
 
   /// Where the tile's morph has moved them. Only of the tile, parent and coarser edges that it was made of (fits).
-  void moveTo(const std::array<float, 9>& byPlace);
+  void moveTo(const MorphByBorders& byBorders);
   bool fits(const TileDraw& draw) const noexcept;
 
   const std::vector<GrainInstance>& instances() const noexcept { return instances_; }
@@ -65,7 +65,7 @@ class TileGrains {
     glm::dvec3 own{0.0};
     std::array<glm::vec3, 3> way{};              ///< to the parent's, by corner of the triangle, weighted
     std::array<float, 3> weight{};               ///< of the corners
-    std::array<std::uint8_t, 3> place{};         ///< of the corners in byPlace
+    std::array<std::uint8_t, 3> borders{};       ///< that the corners are on
     std::array<glm::vec3, 2> normal{}, color{};  ///< own, parent's
   };
   class Surface;
@@ -78,7 +78,7 @@ class TileGrains {
   std::vector<GrainInstance> instances_;
   std::vector<glm::dvec3> roots_;
   std::vector<GrainRun> runs_;
-  std::array<float, 9> byPlace_{};
+  MorphByBorders byBorders_{};
 };
 
 }  // namespace terrane

@@ -8,8 +8,8 @@ namespace {
 /// Cells on a side of the blocks in which triangles are drawn: 14 x 14 vertices then fit the 256 entries of the vertex
 /// cache of software GL (and any GPU's), so that few vertices are shaded twice. In Draco's order of decoding many are.
 constexpr int kBlockCells = 13;
-
-bool hasEdge(unsigned edges, Side side) { return ((edges >> static_cast<unsigned>(side)) & 1u) != 0; }
+/// Columns and rows are bytes on the GPU, and the skirts' mark lies beyond them.
+constexpr int kMaxCells = 254;
 
 template <class Index>
 IndexList uploaded(const std::vector<Index>& indices) {
@@ -36,56 +36,62 @@ std::vector<std::uint64_t> sortedTriangles(const std::vector<std::uint16_t>& ind
 
 }  // namespace
 
-int stitchedVertex(int cells, unsigned coarserEdges, int i, int j) noexcept {
-  const bool alongU =
-      (j == 0 && hasEdge(coarserEdges, Side::VMin)) || (j == cells && hasEdge(coarserEdges, Side::VMax));
-  const bool alongV =
-      (i == 0 && hasEdge(coarserEdges, Side::UMin)) || (i == cells && hasEdge(coarserEdges, Side::UMax));
-  if (alongU) i &= ~1;
-  if (alongV) j &= ~1;
-  return j * (cells + 1) + i;
+GridVertex stitchedVertex(const TileGrid& grid, unsigned coarserEdges, GridVertex at) noexcept {
+  const unsigned borders = grid.borders(at);
+  const auto on = [&](int edge) {
+    return ((coarserEdges >> static_cast<unsigned>(edge)) & 1u) != 0 && (borders & grid.borderOf(edge)) != 0;
+  };
+  if (grid.isSquare()) {
+    if (on(static_cast<int>(Side::VMin)) || on(static_cast<int>(Side::VMax))) at.i &= ~1;
+    if (on(static_cast<int>(Side::UMin)) || on(static_cast<int>(Side::UMax))) at.j &= ~1;
+    return at;
+  }
+  // An odd vertex is on one edge alone.
+  if (on(0) && (at.j & 1) != 0) return {at.i + 1, at.j - 1};
+  if (on(1) && (at.j & 1) != 0) return {0, at.j + 1};
+  if (on(2) && (at.i & 1) != 0) return {at.i - 1, 0};
+  return at;
 }
 
-std::vector<std::uint16_t> gridTriangles(int cells, unsigned coarserEdges) {
+std::vector<std::uint16_t> gridTriangles(const TileGrid& grid, unsigned coarserEdges) {
+  const int cells = grid.cells;
   std::vector<std::uint16_t> indices;
   indices.reserve(6 * static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells));
-  const auto add = [&](int a, int b, int c) {
-    if (a == b || b == c || c == a) return;
-    for (const int corner : {a, b, c}) indices.push_back(static_cast<std::uint16_t>(corner));
+  const auto add = [&](const GridVertex& a, const GridVertex& b, const GridVertex& c) {
+    std::array<int, 3> corners{};
+    std::ranges::transform(std::array{a, b, c}, corners.begin(), [&](const GridVertex& corner) {
+      return grid.index(stitchedVertex(grid, coarserEdges, corner));
+    });
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
+    for (const int corner : corners) indices.push_back(static_cast<std::uint16_t>(corner));
   };
-  const auto at = [&](int i, int j) { return stitchedVertex(cells, coarserEdges, i, j); };
   for (int blockJ = 0; blockJ < cells; blockJ += kBlockCells) {
     for (int blockI = 0; blockI < cells; blockI += kBlockCells) {
-      for (int j = blockJ; j < std::min(blockJ + kBlockCells, cells); ++j) {
-        for (int i = blockI; i < std::min(blockI + kBlockCells, cells); ++i) {
-          add(at(i, j), at(i + 1, j), at(i + 1, j + 1));
-          add(at(i, j), at(i + 1, j + 1), at(i, j + 1));
-        }
-      }
+      for (int j = blockJ; j < std::min(blockJ + kBlockCells, cells); ++j)
+        for (int i = blockI; i < std::min(blockI + kBlockCells, grid.rowEnd(j)); ++i) grid.eachTriangle(i, j, add);
     }
   }
   return indices;
 }
 
-std::vector<std::uint16_t> skirtTriangles(int cells) {
-  const int side = cells + 1;
-  const auto anchor = [&](int edge, int k) {  // in the order of the skirts: VMin, UMax, VMax, UMin
-    switch (edge) {
-      case 0:
-        return k;
-      case 1:
-        return k * side + cells;
-      case 2:
-        return cells * side + cells - k;
-      default:
-        return (cells - k) * side;
-    }
-  };
+namespace {
+
+/// The k-th vertex along the edge that the skirts have as their n-th (tile_mesh.h).
+GridVertex skirtAnchor(const TileGrid& grid, int edge, int k) {
+  const int cells = grid.cells;
+  if (!grid.isSquare()) return edgeVertex(cells, edge, k);
+  return std::array<GridVertex, 4>{
+      {{k, 0}, {cells, k}, {cells - k, cells}, {0, cells - k}}}[static_cast<std::size_t>(edge)];
+}
+
+}  // namespace
+
+std::vector<std::uint16_t> skirtTriangles(const TileGrid& grid) {
   std::vector<std::uint16_t> indices;
-  for (int edge = 0; edge < kEdgeCount; ++edge) {
-    for (int k = 0; k < cells; ++k) {
-      const int top = anchor(edge, k), nextTop = anchor(edge, k + 1);
-      const int bottom = side * side + edge * side + k, nextBottom = bottom + 1;
+  for (int edge = 0; edge < edgeCount(grid.scheme); ++edge) {
+    for (int k = 0; k < grid.cells; ++k) {
+      const int top = grid.index(skirtAnchor(grid, edge, k)), nextTop = grid.index(skirtAnchor(grid, edge, k + 1));
+      const int bottom = grid.vertexCount() + edge * (grid.cells + 1) + k, nextBottom = bottom + 1;
       for (const int corner : {top, bottom, nextTop, nextTop, bottom, nextBottom})
         indices.push_back(static_cast<std::uint16_t>(corner));
     }
@@ -93,11 +99,13 @@ std::vector<std::uint16_t> skirtTriangles(int cells) {
   return indices;
 }
 
-std::optional<std::vector<std::uint32_t>> verticesInGridOrder(const TileMesh& mesh, int cells) {
-  const auto side = static_cast<std::size_t>(cells) + 1;
-  const std::size_t count = side * side + kEdgeCount * side;
-  const std::size_t triangles = 2 * (side - 1) * (side - 1) + 2 * kEdgeCount * (side - 1);
-  if (count > 65536 || mesh.vertexCount() != count || mesh.triangles.size() != 3 * triangles) return std::nullopt;
+std::optional<std::vector<std::uint32_t>> verticesInGridOrder(const TileMesh& mesh, const TileGrid& grid) {
+  const auto cells = static_cast<std::size_t>(grid.cells);
+  const std::size_t skirts = skirtVertexCount(grid.scheme, grid.cells);
+  const std::size_t count = gridVertexCount(grid.scheme, grid.cells) + skirts;
+  const std::size_t triangles = (grid.isSquare() ? 2 : 1) * cells * cells + 2 * (skirts - skirts / (cells + 1));
+  if (count > 65536 || grid.cells > kMaxCells || mesh.vertexCount() != count || mesh.triangles.size() != 3 * triangles)
+    return std::nullopt;
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::vector<std::uint32_t> order(count, kNone);
   for (std::size_t vertex = 0; vertex < count; ++vertex) {
@@ -105,27 +113,26 @@ std::optional<std::vector<std::uint32_t>> verticesInGridOrder(const TileMesh& me
     if (place >= count || order[place] != kNone) return std::nullopt;
     order[place] = static_cast<std::uint32_t>(vertex);
   }
-  std::vector<std::uint16_t> own, standard = gridTriangles(cells, 0);
+  std::vector<std::uint16_t> own, standard = gridTriangles(grid, 0);
   own.reserve(mesh.triangles.size());
   for (const std::uint32_t vertex : mesh.triangles) own.push_back(mesh.gridIndices[vertex]);
-  std::ranges::copy(skirtTriangles(cells), std::back_inserter(standard));
+  std::ranges::copy(skirtTriangles(grid), std::back_inserter(standard));
   if (sortedTriangles(own) != sortedTriangles(standard)) return std::nullopt;
   return order;
 }
 
-TileIndices::TileIndices(int cells) : cells_(cells) {
-  surfaces_[0] = uploaded(gridTriangles(cells, 0));
-  skirts_ = uploaded(skirtTriangles(cells));
+TileIndices::TileIndices(const TileGrid& grid) : grid_(grid) {
+  surfaces_[0] = uploaded(gridTriangles(grid, 0));
+  skirts_ = uploaded(skirtTriangles(grid));
 }
 
 TileIndices::TileIndices(const Tile& tile) {
   const TileMesh& mesh = tile.mesh;
-  const int side = tile.metadata.cellsPerEdge + 1;
+  const std::size_t onGrid = gridVertexCount(tile.metadata.path.scheme(), tile.metadata.cellsPerEdge);
   std::vector<std::uint32_t> surface, skirts;
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     const auto corners = std::span(mesh.triangles).subspan(t, 3);
-    const bool skirt =
-        std::ranges::any_of(corners, [&](std::uint32_t v) { return mesh.gridIndices[v] >= side * side; });
+    const bool skirt = std::ranges::any_of(corners, [&](std::uint32_t v) { return mesh.gridIndices[v] >= onGrid; });
     std::ranges::copy(corners, std::back_inserter(skirt ? skirts : surface));
   }
   surfaces_[0] = uploaded(surface);
@@ -134,7 +141,7 @@ TileIndices::TileIndices(const Tile& tile) {
 
 const IndexList& TileIndices::surface(unsigned coarserEdges) {
   std::optional<IndexList>& list = surfaces_[isGrid() ? coarserEdges % surfaces_.size() : 0];
-  if (!list) list = uploaded(gridTriangles(cells_, coarserEdges));
+  if (!list) list = uploaded(gridTriangles(*grid_, coarserEdges));
   return *list;
 }
 

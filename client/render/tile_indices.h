@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/gl/objects.h"
+#include "common/tiling/tile_grid.h"
 #include "proto/tile_mesh.h"
 
 namespace terrane {
@@ -16,17 +17,18 @@ namespace terrane {
 /// A grid's surface by grid indices, in an order that suits a vertex cache. coarserEdges: TileMorph's bits; along such
 /// an edge no odd vertex is used, so that its triangles meet a coarser tile's vertex for vertex. With a bit set, cells
 /// must be even.
-std::vector<std::uint16_t> gridTriangles(int cells, unsigned coarserEdges);
+std::vector<std::uint16_t> gridTriangles(const TileGrid& grid, unsigned coarserEdges);
 /// The walls below the edges; skirt vertices are numbered as TileMesh has them.
-std::vector<std::uint16_t> skirtTriangles(int cells);
+std::vector<std::uint16_t> skirtTriangles(const TileGrid& grid);
 
 /// The mesh's vertex of each grid index, skirts last; empty unless the mesh is a complete grid with skirts and has
 /// exactly the triangles above.
-std::optional<std::vector<std::uint32_t>> verticesInGridOrder(const TileMesh& mesh, int cells);
+std::optional<std::vector<std::uint32_t>> verticesInGridOrder(const TileMesh& mesh, const TileGrid& grid);
 
-/// Where the vertex at (i, j) of the surface is drawn, by grid index: itself, or for an odd vertex of a coarser edge
-/// the even one before it. Taking always the one before keeps the triangles of both edges apart at a corner.
-int stitchedVertex(int cells, unsigned coarserEdges, int i, int j) noexcept;
+/// Where a vertex of the surface is drawn: itself, or for an odd vertex of a coarser edge the even one before it, along
+/// a row or column of a square, counter-clockwise around a triangle. Taking always the one before keeps the triangles
+/// of both edges apart at a corner.
+GridVertex stitchedVertex(const TileGrid& grid, unsigned coarserEdges, GridVertex at) noexcept;
 
 struct IndexList {
   gl::Buffer buffer;
@@ -37,18 +39,18 @@ struct IndexList {
 class TileIndices {
  public:
   /// Of complete grids, vertices in grid order.
-  explicit TileIndices(int cells);
+  explicit TileIndices(const TileGrid& grid);
   /// Of a mesh as it came.
   explicit TileIndices(const Tile& tile);
 
-  bool isGrid() const noexcept { return cells_ > 0; }
+  bool isGrid() const noexcept { return grid_.has_value(); }
   /// Built when first asked for. Only grids heed the bits.
   const IndexList& surface(unsigned coarserEdges);
   const IndexList& skirts() const noexcept { return skirts_; }
   std::size_t bytes() const noexcept;
 
  private:
-  int cells_ = 0;  ///< 0: no grid
+  std::optional<TileGrid> grid_;
   std::array<std::optional<IndexList>, 1u << kEdgeCount> surfaces_;
   IndexList skirts_;
 };

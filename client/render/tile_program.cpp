@@ -81,7 +81,8 @@ TileProgram::TileProgram(gl::Program program, const TileVariant& variant)
   cameraHigh_ = program_.uniform("cameraHigh");
   cameraLow_ = program_.uniform("cameraLow");
   morphGrid_ = program_.uniform("morphGrid");
-  morphByPlace_ = program_.uniform("morphByPlace");
+  firstInHalfCells_ = program_.uniform("firstInHalfCells");
+  morphByBorders_ = program_.uniform("morphByBorders");
   parentMinusOwn_ = program_.uniform("parentMinusOwn");
   cameraOdd_ = program_.uniform("cameraOdd");
   parentCameraRest_ = program_.uniform("parentCameraRest");
@@ -121,8 +122,10 @@ void TileProgram::placeCamera(int stepExponent) {
 }
 
 void TileProgram::setMorph(const TileDraw& draw) const {
-  setUniform(morphGrid_, glm::ivec3{draw.grid.side, draw.grid.firstColumn, draw.grid.firstRow});
-  setUniform(morphByPlace_, draw.byPlace);
+  const TileGrid& grid = draw.grid.grid;
+  setUniform(morphGrid_, glm::ivec3{grid.cells + 1, grid.isSquare() ? 0 : 1, draw.grid.direction()});
+  setUniform(firstInHalfCells_, draw.grid.firstInHalfCells());
+  setUniform(morphByBorders_, draw.byBorders);
   setUniform(parentMinusOwn_, draw.grid.parentMinusOwn);
   const TileMetadata& parent = draw.parent->metadata;
   const DoubleFloat3 origin = fromDouble(latticePosition(parent.origin, parent.stepExponent));

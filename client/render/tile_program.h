@@ -57,8 +57,8 @@ class TileProgram {
   TileVariant variant_;
   gl::Uniform clipRows_, nearMeters_, exposure_, tint_, mark_;
   gl::Uniform stepMeters_, originMinusCamera_, cameraRest_, originHigh_, originLow_, cameraHigh_, cameraLow_;
-  gl::Uniform morphGrid_, morphByPlace_, parentMinusOwn_, cameraOdd_, parentCameraRest_, parentOriginHigh_,
-      parentOriginLow_;
+  gl::Uniform morphGrid_, firstInHalfCells_, morphByBorders_, parentMinusOwn_, cameraOdd_, parentCameraRest_,
+      parentOriginHigh_, parentOriginLow_;
 
   glm::dvec3 cameraBody_{0.0};
   std::optional<int> stepExponent_;  ///< whose camera values are set

@@ -286,7 +286,8 @@ Result<std::unique_ptr<TileRenderer>> TileRenderer::create(const std::vector<Eff
   if (auto program = state->program({state->selfTest.chosen, TilePurpose::Shaded, false}); !program)
     return program.error();
   for (const auto& effect : state->effects) {
-    auto pass = effect->makePass({state->capabilities, state->selfTest, state->effects, options.bodyRadiusMeters});
+    auto pass = effect->makePass(
+        {state->capabilities, state->selfTest, state->effects, options.bodyRadiusMeters, options.bodyScheme});
     if (!pass) return pass.error();
     if (*pass) state->passes.push_back(std::move(*pass));
   }

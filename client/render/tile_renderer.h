@@ -49,6 +49,7 @@ struct RendererOptions {
   bool forceBaseline = false;
   /// Of the body whose tiles are drawn. Without it nothing is put on the ground: its sizes would not be known.
   double bodyRadiusMeters = 0;
+  Scheme bodyScheme = Scheme::Cube;
 };
 
 struct DrawStats {

@@ -1,24 +1,29 @@
-// A vertex between its tile's own surface and its parent's (common/view/drawn_tile.h, client/render/morph_grid.h). Vertices lie in grid order,
-// so that gl_VertexID tells the place in the grid; the parent's are read from its own vertex buffer.
+// A vertex between its tile's own surface and its parent's (common/view/drawn_tile.h, client/render/morph_grid.h); the parent's vertices are
+// read from its own buffer. One code for squares and triangles (common/tiling/tile_grid.h).
 uniform usamplerBuffer parentVertices;  // 5 words a vertex, as GpuVertex has them
-uniform ivec3 morphGrid;                // vertices in a row; column and row of the parent's grid where the tile's vertex (0, 0) lies
+uniform ivec3 morphGrid;                // vertices in the first row; how many fewer each next row has, 0 or 1; 1, or -1 if turned round
+uniform ivec2 firstInHalfCells;         // where vertex (0, 0) lies, in half cells of the parent's grid
 uniform ivec3 parentMinusOwn;           // twice the parent's origin minus the tile's, in the tile's steps
-uniform float morphByPlace[9];          // rows first, between, last of columns first, between, last
+uniform float morphByBorders[13];
 
 struct MorphedVertex {
   float morph;        // 0 own .. 1 the parent's
   int first, second;  // words of the two vertices of the parent in whose middle it then lies; equal where it lies on one
 };
 
-MorphedVertex morphedVertex() {
-  int side = morphGrid.x;
-  int row = gl_VertexID / side;
-  ivec2 at = ivec2(gl_VertexID - row * side, min(row, side - 1));
-  ivec2 first = (at >> 1) + morphGrid.yz;
-  ivec2 second = first + (at & 1);
-  ivec2 place = ivec2(greaterThan(at, ivec2(0))) + ivec2(equal(at, ivec2(side - 1)));
-  float morph = row < side ? morphByPlace[3 * place.y + place.x] : 0.0;  // a skirt keeps its foot
-  return MorphedVertex(morph, 5 * (first.y * side + first.x), 5 * (second.y * side + second.x));
+int parentWords(ivec2 at) { return 5 * (at.y * morphGrid.x - morphGrid.y * ((at.y * (at.y - 1)) >> 1) + at.x); }
+
+// place: GpuVertex has it.
+MorphedVertex morphedVertex(uint place) {
+  int fewer = morphGrid.y, last = morphGrid.x - 1;
+  ivec2 at = min(ivec2(place & 255u, place >> 8), ivec2(last));
+  ivec2 odd = at & 1;
+  // Where both are odd the parent's edge is the one that cuts a square, or runs along i + j of a triangle.
+  ivec2 along = ivec2(odd.x, odd.y - 2 * (odd.x & odd.y & fewer));
+  ivec2 twice = firstInHalfCells + morphGrid.z * at;
+  int borders = int(at.x == 0) + 2 * int(at.y == 0) + 4 * int(at.x == last - fewer * at.y) + 8 * (1 - fewer) * int(at.y == last);
+  float morph = place == 65535u ? 0.0 : morphByBorders[borders];  // a skirt keeps its foot
+  return MorphedVertex(morph, parentWords((twice - along) >> 1), parentWords((twice + along) >> 1));
 }
 
 uint parentWord(int at) { return texelFetch(parentVertices, at).r; }

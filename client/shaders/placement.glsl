@@ -2,6 +2,8 @@
 // Vertices that two tiles of one level share give the same bits, whichever tile draws them (except with _FLOAT32, the control that
 // shows what is gained). With MORPH also where both have the same share of the way to their parents' surfaces, and, all the way on a
 // parent's vertex, the bits that the parent's own draw gives.
+layout(location = 0) in uvec4 vertexOffset;  // x, y, z in steps from the tile's origin; w: the place in the grid
+
 #ifdef MORPH
 #include "morph.glsl"
 #endif
@@ -16,8 +18,6 @@ vec3 relativePosition() { return vertexRelative; }
 vec3 morphedPosition(MorphedVertex vertex) { return vertexRelative; }
 #endif
 #else
-layout(location = 0) in uvec4 vertexOffset;  // x, y, z in steps from the tile's origin; w is not 0 on a skirt
-
 #ifdef PLACEMENT_INTEGER
 #include "relative_position.glsl"
 uniform ivec3 originMinusCamera;  // in steps; the camera rounded down to the lattice

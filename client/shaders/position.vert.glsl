@@ -6,7 +6,7 @@ invariant gl_Position;
 
 void main() {
 #ifdef MORPH
-  gl_Position = clipPosition(morphedPosition(morphedVertex()));
+  gl_Position = clipPosition(morphedPosition(morphedVertex(vertexOffset.w)));
 #else
   gl_Position = clipPosition(relativePosition());
 #endif

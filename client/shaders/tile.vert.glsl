@@ -26,7 +26,7 @@ void main() {
 #ifdef MORPH
   // All the way at its parent a vertex has what the parent's own draw has there: on a vertex its bits, between two the middle of what it
   // interpolates, which is light as each of the two shows it, not normals.
-  MorphedVertex vertex = morphedVertex();
+  MorphedVertex vertex = morphedVertex(vertexOffset.w);
   vec3 relative = morphedPosition(vertex);
   vec3 parents = 0.5 * (parentColor(vertex.first) + parentColor(vertex.second));
   PRECISE vec3 shown = vertexColor * (1.0 - vertex.morph) + parents * vertex.morph;

@@ -12,6 +12,9 @@ namespace {
 /// most half a step of some 500 in a cell.
 constexpr double kEdgeTolerance = 0.05;
 
+/// Weights of what is no triangle.
+constexpr double kNoTriangle = -1e29;
+
 double cross2(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
 
 }  // namespace
@@ -25,38 +28,41 @@ struct GroundMesh::Ray {
 
   // Only for a tile that is drawn on its way to its parent.
   const GroundMesh* parent = nullptr;
-  std::array<float, 9> byPlace{};
-  int firstColumn = 0, firstRow = 0;  ///< of the parent's grid, where the tile's vertex (0, 0) lies
+  MorphByBorders byBorders{};
+  int childDigit = 0;
   glm::dvec3 parentOriginFromAnchor;
 };
 
-GroundMesh GroundMesh::fromTile(const Tile& tile) {
-  const int cells = tile.metadata.cellsPerEdge;
-  const TileMesh& source = tile.mesh;
-  if (cells < 1 || cells > 255 || source.offsets.size() != 3 * source.vertexCount()) return {};
-  const auto row = static_cast<std::size_t>(cells) + 1;
-  const std::size_t gridVertices = row * row;
+/// One triangle of a triangular grid: of a cell the one that lies as the tile does, or the one turned round.
+struct GroundMesh::Cell {
+  int i = 0, j = 0;
+  bool turned = false;
 
-  GroundMesh mesh;
-  mesh.offsets_.resize(3 * gridVertices);
-  std::vector<bool> present(gridVertices);
-  for (std::size_t vertex = 0; vertex < source.vertexCount(); ++vertex) {
-    const std::size_t grid = source.gridIndices[vertex];
-    if (grid >= gridVertices) continue;  // a skirt
-    std::copy_n(source.offsets.begin() + static_cast<std::ptrdiff_t>(3 * vertex), 3,
-                mesh.offsets_.begin() + static_cast<std::ptrdiff_t>(3 * grid));
-    present[grid] = true;
+  std::array<GridVertex, 3> corners() const noexcept {
+    if (turned) return {{{i + 1, j + 1}, {i, j + 1}, {i + 1, j}}};
+    return {{{i, j}, {i + 1, j}, {i, j + 1}}};
   }
-  if (!std::all_of(present.begin(), present.end(), [](bool there) { return there; })) return {};
+  /// That of the other kind beyond the side opposite a corner.
+  Cell beyond(std::size_t corner) const noexcept {
+    const int away = turned ? 1 : -1;
+    return {i + (corner == 1 ? away : 0), j + (corner == 2 ? away : 0), !turned};
+  }
+  bool isOf(int cells) const noexcept { return i >= 0 && j >= 0 && i + j + (turned ? 1 : 0) < cells; }
+};
 
-  mesh.diagonals_.resize((static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) + 7) / 8);
-  for (std::size_t t = 0; t + 2 < source.triangles.size(); t += 3) {
+namespace {
+
+/// Which way every cell is cut.
+std::vector<std::uint8_t> diagonalsOf(const TileMesh& mesh, const TileGrid& grid) {
+  const auto cells = static_cast<std::size_t>(grid.cells), row = cells + 1, gridVertices = row * row;
+  std::vector<std::uint8_t> diagonals((cells * cells + 7) / 8);
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     std::array<std::size_t, 3> corner{};
     bool onGrid = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = source.triangles[t + k];
-      onGrid = onGrid && vertex < source.vertexCount() && source.gridIndices[vertex] < gridVertices;
-      if (onGrid) corner[k] = source.gridIndices[vertex];
+      const std::uint32_t vertex = mesh.triangles[t + k];
+      onGrid = onGrid && vertex < mesh.vertexCount() && mesh.gridIndices[vertex] < gridVertices;
+      if (onGrid) corner[k] = mesh.gridIndices[vertex];
     }
     if (!onGrid) continue;
     const std::size_t left = std::min({corner[0] % row, corner[1] % row, corner[2] % row});
@@ -66,11 +72,34 @@ GroundMesh GroundMesh::fromTile(const Tile& tile) {
       return std::find(corner.begin(), corner.end(), (bottom + j) * row + left + i) != corner.end();
     };
     if (has(0, 0) && has(1, 1)) {
-      const std::size_t cell = bottom * (row - 1) + left;
-      mesh.diagonals_[cell / 8] = static_cast<std::uint8_t>(mesh.diagonals_[cell / 8] | (1u << (cell % 8)));
+      const std::size_t cell = bottom * cells + left;
+      diagonals[cell / 8] = static_cast<std::uint8_t>(diagonals[cell / 8] | (1u << (cell % 8)));
     }
   }
-  mesh.cells_ = cells;
+  return diagonals;
+}
+
+}  // namespace
+
+GroundMesh GroundMesh::fromTile(const Tile& tile) {
+  const TileGrid grid{tile.metadata.path.scheme(), tile.metadata.cellsPerEdge};
+  const TileMesh& source = tile.mesh;
+  if (grid.cells < 1 || grid.cells > 255 || source.offsets.size() != 3 * source.vertexCount()) return {};
+  const auto gridVertices = static_cast<std::size_t>(grid.vertexCount());
+
+  GroundMesh mesh;
+  mesh.offsets_.resize(3 * gridVertices);
+  std::vector<bool> present(gridVertices);
+  for (std::size_t vertex = 0; vertex < source.vertexCount(); ++vertex) {
+    const std::size_t place = source.gridIndices[vertex];
+    if (place >= gridVertices) continue;  // a skirt
+    std::copy_n(source.offsets.begin() + static_cast<std::ptrdiff_t>(3 * vertex), 3,
+                mesh.offsets_.begin() + static_cast<std::ptrdiff_t>(3 * place));
+    present[place] = true;
+  }
+  if (!std::all_of(present.begin(), present.end(), [](bool there) { return there; })) return {};
+  if (grid.isSquare()) mesh.diagonals_ = diagonalsOf(source, grid);
+  mesh.grid_ = grid;
   mesh.stepExponent_ = tile.metadata.stepExponent;
   mesh.origin_ = tile.metadata.origin;
   return mesh;
@@ -80,50 +109,45 @@ std::size_t GroundMesh::bytes() const noexcept {
   return offsets_.size() * sizeof(offsets_[0]) + diagonals_.size() + sizeof(*this);
 }
 
-glm::dvec3 GroundMesh::offset(int i, int j) const {
-  const std::size_t at =
-      3 * (static_cast<std::size_t>(j) * (static_cast<std::size_t>(cells_) + 1) + static_cast<std::size_t>(i));
-  return {offsets_[at], offsets_[at + 1], offsets_[at + 2]};
+glm::dvec3 GroundMesh::offset(const GridVertex& at) const {
+  const std::size_t first = 3 * static_cast<std::size_t>(grid_.index(at));
+  return {offsets_[first], offsets_[first + 1], offsets_[first + 2]};
 }
 
-glm::dvec3 GroundMesh::vertex(const Ray& ray, int i, int j) const {
-  const glm::dvec3 own = ray.originFromAnchor + ray.step * offset(i, j);
+glm::dvec3 GroundMesh::vertex(const Ray& ray, const GridVertex& at) const {
+  const glm::dvec3 own = ray.originFromAnchor + ray.step * offset(at);
   if (ray.parent == nullptr) return own;
   // Twice the parent's step times the mean of two offsets is the step times their sum.
-  const int column = (i >> 1) + ray.firstColumn, row = (j >> 1) + ray.firstRow;
-  const glm::dvec3 twice = ray.parent->offset(column, row) + ray.parent->offset(column + (i & 1), row + (j & 1));
-  return own + static_cast<double>(morphAt(ray.byPlace, cells_ + 1, i, j)) *
-                   (ray.parentOriginFromAnchor + ray.step * twice - own);
+  const auto [first, second] = grid_.parentVertices(ray.childDigit, at);
+  const glm::dvec3 twice = ray.parent->offset(first) + ray.parent->offset(second);
+  return own +
+         static_cast<double>(ray.byBorders[grid_.borders(at)]) * (ray.parentOriginFromAnchor + ray.step * twice - own);
 }
 
-GroundMesh::Hit GroundMesh::meetCell(const Ray& ray, int i, int j) const {
-  const std::array<glm::dvec3, 4> corner{vertex(ray, i, j), vertex(ray, i + 1, j), vertex(ray, i, j + 1),
-                                         vertex(ray, i + 1, j + 1)};
-  const auto cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(i);
-  const bool rising = (diagonals_[cell / 8] >> (cell % 8)) & 1u;
-  using Triple = std::array<std::size_t, 3>;
-  const std::array<Triple, 2> triangles = rising ? std::array<Triple, 2>{Triple{0, 1, 3}, Triple{0, 3, 2}}
-                                                 : std::array<Triple, 2>{Triple{0, 1, 2}, Triple{1, 3, 2}};
-
-  Hit best;
-  for (const Triple& triangle : triangles) {
-    // Seen along the ray, the ray is the origin: its barycentric coordinates are ratios of areas.
-    std::array<double, 3> x{}, y{}, depth{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      x[k] = glm::dot(corner[triangle[k]], ray.across);
-      y[k] = glm::dot(corner[triangle[k]], ray.along);
-      depth[k] = glm::dot(corner[triangle[k]], ray.direction);
-    }
-    const std::array<double, 3> part{cross2(x[1], y[1], x[2], y[2]), cross2(x[2], y[2], x[0], y[0]),
-                                     cross2(x[0], y[0], x[1], y[1])};
-    const double area = part[0] + part[1] + part[2];
-    if (area == 0) continue;
-    const double inside = std::min({part[0] / area, part[1] / area, part[2] / area});
-    if (inside <= best.inside) continue;
-    best.inside = inside;
-    best.alongMeters = (part[0] * depth[0] + part[1] * depth[1] + part[2] * depth[2]) / area;
+GroundMesh::Hit GroundMesh::meetTriangle(const Ray& ray, const std::array<GridVertex, 3>& corners) const {
+  // Seen along the ray, the ray is the origin: its barycentric coordinates are ratios of areas.
+  std::array<double, 3> x{}, y{}, depth{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 corner = vertex(ray, corners[k]);
+    x[k] = glm::dot(corner, ray.across);
+    y[k] = glm::dot(corner, ray.along);
+    depth[k] = glm::dot(corner, ray.direction);
   }
-  return best;
+  const std::array<double, 3> part{cross2(x[1], y[1], x[2], y[2]), cross2(x[2], y[2], x[0], y[0]),
+                                   cross2(x[0], y[0], x[1], y[1])};
+  const double area = part[0] + part[1] + part[2];
+  if (area == 0) return {};
+  return {{part[0] / area, part[1] / area, part[2] / area},
+          (part[0] * depth[0] + part[1] * depth[1] + part[2] * depth[2]) / area};
+}
+
+GroundMesh::Hit GroundMesh::meetSquare(const Ray& ray, int i, int j) const {
+  const auto cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.cells) + static_cast<std::size_t>(i);
+  const bool rising = (diagonals_[cell / 8] >> (cell % 8)) & 1u;
+  const GridVertex v00{i, j}, v10{i + 1, j}, v01{i, j + 1}, v11{i + 1, j + 1};
+  const Hit one = meetTriangle(ray, {v00, v10, rising ? v11 : v01});
+  const Hit other = rising ? meetTriangle(ray, {v00, v11, v01}) : meetTriangle(ray, {v10, v11, v01});
+  return other.inside() > one.inside() ? other : one;
 }
 
 GroundMesh::Ray GroundMesh::rayAlong(const glm::dvec3& direction) const {
@@ -150,30 +174,57 @@ std::optional<double> GroundMesh::morphedHeightMeters(const glm::dvec3& directio
                                                       const GroundMesh& parent, int childDigit) const {
   if (empty()) return std::nullopt;
   Ray ray = rayAlong(direction);
-  if (parent.cells_ == cells_ && cells_ % 2 == 0 && parent.stepExponent_ == stepExponent_ + 1) {
+  if (parent.grid_ == grid_ && grid_.cells % 2 == 0 && parent.stepExponent_ == stepExponent_ + 1) {
     ray.parent = &parent;
-    ray.byPlace = morphByPlace(morph);
-    ray.firstColumn = (childDigit & 1) != 0 ? cells_ / 2 : 0;
-    ray.firstRow = (childDigit & 2) != 0 ? cells_ / 2 : 0;
+    ray.byBorders = morphByBorders(grid_, morph);
+    ray.childDigit = childDigit;
     ray.parentOriginFromAnchor = latticePosition(parent.origin_, parent.stepExponent_) - ray.anchorMeters * direction;
   }
   return meet(ray, u, v, radiusMeters);
 }
 
-std::optional<double> GroundMesh::meet(const Ray& ray, double u, double v, double radiusMeters) const {
-  const int i = std::clamp(static_cast<int>(std::floor(u * cells_)), 0, cells_ - 1);
-  const int j = std::clamp(static_cast<int>(std::floor(v * cells_)), 0, cells_ - 1);
-  Hit best = meetCell(ray, i, j);
+GroundMesh::Hit GroundMesh::meetSquares(const Ray& ray, double u, double v) const {
+  const int cells = grid_.cells;
+  const int i = std::clamp(static_cast<int>(std::floor(u * cells)), 0, cells - 1);
+  const int j = std::clamp(static_cast<int>(std::floor(v * cells)), 0, cells - 1);
+  Hit best = meetSquare(ray, i, j);
   // Near a cell's edge, rounding to the lattice may have moved the ray into the cell beside.
-  for (int dj = -1; dj <= 1 && best.inside < 0; ++dj) {
+  for (int dj = -1; dj <= 1 && best.inside() < 0; ++dj) {
     for (int di = -1; di <= 1; ++di) {
-      if (i + di < 0 || j + dj < 0 || i + di >= cells_ || j + dj >= cells_) continue;
-      const Hit hit = meetCell(ray, i + di, j + dj);
-      if (hit.inside > best.inside) best = hit;
+      if (i + di < 0 || j + dj < 0 || i + di >= cells || j + dj >= cells) continue;
+      const Hit hit = meetSquare(ray, i + di, j + dj);
+      if (hit.inside() > best.inside()) best = hit;
     }
   }
-  if (best.inside < -kEdgeTolerance) return std::nullopt;
-  return (ray.anchorMeters - radiusMeters) + best.alongMeters;
+  return best;
+}
+
+GroundMesh::Hit GroundMesh::meetTriangles(const Ray& ray, double u, double v) const {
+  const int cells = grid_.cells;
+  const double x = std::clamp(u, 0.0, 1.0) * cells, y = std::clamp(v, 0.0, 1.0) * cells;
+  Cell cell{std::min(static_cast<int>(x), cells - 1), 0, false};
+  cell.j = std::min(static_cast<int>(y), cells - 1 - cell.i);
+  Hit best;
+  // From triangle to triangle towards the ray. A coarse tile's weights may be some cells off where its map is not that
+  // of a plane.
+  for (int walked = 0; walked < 4 * cells; ++walked) {
+    const Hit hit = meetTriangle(ray, cell.corners());
+    if (hit.inside() > best.inside()) best = hit;
+    std::array<std::size_t, 3> outermost{0, 1, 2};
+    std::ranges::sort(outermost, {}, [&](std::size_t k) { return hit.weights[k]; });
+    const auto way = std::ranges::find_if(outermost, [&](std::size_t k) {
+      return hit.weights[k] < 0 && hit.weights[k] > kNoTriangle && cell.beyond(k).isOf(cells);
+    });
+    if (way == outermost.end()) break;
+    cell = cell.beyond(*way);
+  }
+  return best;
+}
+
+std::optional<double> GroundMesh::meet(const Ray& ray, double u, double v, double radiusMeters) const {
+  const Hit hit = grid_.isSquare() ? meetSquares(ray, u, v) : meetTriangles(ray, u, v);
+  if (hit.inside() < -kEdgeTolerance) return std::nullopt;
+  return (ray.anchorMeters - radiusMeters) + hit.alongMeters;
 }
 
 }  // namespace terrane

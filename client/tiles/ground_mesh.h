@@ -1,9 +1,10 @@
 #pragma once
 // What stays of a tile's mesh in main memory once it is on the GPU: the lattice offsets of its grid vertices in grid
-// order and the diagonal of every cell, 6 bytes a vertex. Answers how high the triangle under a direction is, as the
-// tile has it or as it is drawn on its way to its parent.
-// Body frame, metres; const is thread-safe.
+// order and, of a square, the diagonal of every cell, 6 bytes a vertex. Answers how high the triangle under a direction
+// is, as the tile has it or as it is drawn on its way to its parent. Body frame, metres; const is thread-safe.
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -20,11 +21,12 @@ class GroundMesh {
   /// Empty if the tile is no complete grid.
   static GroundMesh fromTile(const Tile& tile);
 
-  bool empty() const noexcept { return cells_ == 0; }
+  bool empty() const noexcept { return grid_.cells == 0; }
   std::size_t bytes() const noexcept;
 
   /// Height above a sphere of radiusMeters of the point where the ray from the body's centre meets the mesh. direction:
-  /// unit; (u, v): where it falls in the tile, 0..1, which only tells where to look first. Error <= 4 ulp of the radius
+  /// unit; (u, v): where it falls in the tile, of a triangle its weights at corners 1 and 2, 0..1, which only tells
+  /// where to look first. Error <= 4 ulp of the radius
   /// (ground_mesh_test). Empty if the mesh is, or if the ray passes it by.
   std::optional<double> heightMeters(const glm::dvec3& direction, double u, double v, double radiusMeters) const;
 
@@ -37,20 +39,25 @@ class GroundMesh {
  private:
   struct Ray;
   struct Hit {
-    double inside = -1e30;  ///< smallest barycentric coordinate: >= 0 within the triangle
+    std::array<double, 3> weights{-1e30, -1e30, -1e30};  ///< barycentric coordinates: all >= 0 within the triangle
     double alongMeters = 0;
+    double inside() const noexcept { return std::min({weights[0], weights[1], weights[2]}); }
   };
+  struct Cell;
   Ray rayAlong(const glm::dvec3& direction) const;
   std::optional<double> meet(const Ray& ray, double u, double v, double radiusMeters) const;
-  Hit meetCell(const Ray& ray, int i, int j) const;
-  glm::dvec3 vertex(const Ray& ray, int i, int j) const;
-  glm::dvec3 offset(int i, int j) const;
+  Hit meetSquares(const Ray& ray, double u, double v) const;
+  Hit meetTriangles(const Ray& ray, double u, double v) const;
+  Hit meetSquare(const Ray& ray, int i, int j) const;
+  Hit meetTriangle(const Ray& ray, const std::array<GridVertex, 3>& corners) const;
+  glm::dvec3 vertex(const Ray& ray, const GridVertex& at) const;
+  glm::dvec3 offset(const GridVertex& at) const;
 
-  int cells_ = 0;
+  TileGrid grid_;
   int stepExponent_ = 0;
   LatticePoint origin_{0};
-  std::vector<std::uint16_t> offsets_;   ///< 3 a vertex; vertex (i, j) is number j * (cells + 1) + i
-  std::vector<std::uint8_t> diagonals_;  ///< a bit a cell: set if the diagonal joins corners 00 and 11
+  std::vector<std::uint16_t> offsets_;   ///< 3 a vertex, by grid index
+  std::vector<std::uint8_t> diagonals_;  ///< of a square, a bit a cell: set if the diagonal joins corners 00 and 11
 };
 
 }  // namespace terrane

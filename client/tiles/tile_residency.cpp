@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "common/tiling/cube_sphere.h"
+#include "common/tiling/tile_at.h"
 
 namespace terrane {
 
@@ -108,21 +108,6 @@ void TileResidency::clear() {
 
 namespace {
 
-/// A place in the grid of a level: a tile, and where in it, 0..1.
-struct PlaceInTile {
-  FacePath path;
-  double u = 0, v = 0;
-};
-
-PlaceInTile placeAt(const FaceCoordinates& on, int level) {
-  const double tiles = static_cast<double>(std::uint64_t{1} << level);
-  const double x = std::clamp(0.5 * (on.s + 1.0), 0.0, 1.0) * tiles,
-               y = std::clamp(0.5 * (on.t + 1.0), 0.0, 1.0) * tiles;
-  const double column = std::min(std::floor(x), tiles - 1), row = std::min(std::floor(y), tiles - 1);
-  return {FacePath::cubeTile(on.face, level, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row)),
-          x - column, y - row};
-}
-
 std::optional<glm::dvec3> unitDirection(const glm::dvec3& direction) {
   const double length = glm::length(direction);
   if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
@@ -131,17 +116,17 @@ std::optional<glm::dvec3> unitDirection(const glm::dvec3& direction) {
 
 }  // namespace
 
-std::optional<TileResidency::Ground> TileResidency::groundBelow(const glm::dvec3& directionBody,
-                                                                double radiusMeters) const {
+std::optional<TileResidency::Ground> TileResidency::groundBelow(const glm::dvec3& directionBody, double radiusMeters,
+                                                                Scheme scheme) const {
   const auto direction = unitDirection(directionBody);
   if (!direction) return std::nullopt;
-  const FaceCoordinates on = cubeFaceCoordinates(*direction);
+  const FacePath finest = tileAt(scheme, *direction, FacePath::kMaxLevel);
   for (int level = FacePath::kMaxLevel; level >= 0; --level) {
     if (countAtLevel_[static_cast<std::size_t>(level)] == 0) continue;
-    const PlaceInTile at = placeAt(on, level);
-    const auto found = tiles_.find(at.path);
+    const auto found = tiles_.find(finest.ancestor(level));
     if (found == tiles_.end()) continue;
-    const auto height = found->second.ground.heightMeters(*direction, at.u, at.v, radiusMeters);
+    const glm::dvec2 at = placeInTile(found->first, *direction);
+    const auto height = found->second.ground.heightMeters(*direction, at.x, at.y, radiusMeters);
     if (height) return Ground{*height, level};
   }
   return std::nullopt;
@@ -150,18 +135,18 @@ std::optional<TileResidency::Ground> TileResidency::groundBelow(const glm::dvec3
 std::optional<double> TileResidency::drawnHeightBelow(const glm::dvec3& directionBody, double radiusMeters,
                                                       const std::vector<DrawnTile>& drawn) const {
   const auto direction = unitDirection(directionBody);
-  if (!direction) return std::nullopt;
-  const FaceCoordinates on = cubeFaceCoordinates(*direction);
+  if (!direction || drawn.empty()) return std::nullopt;
+  const FacePath finest = tileAt(drawn.front().path.scheme(), *direction, FacePath::kMaxLevel);
   for (const DrawnTile& tile : drawn) {
     const int level = tile.path.level();
-    const PlaceInTile at = placeAt(on, level);
-    if (at.path != tile.path) continue;
+    if (finest.ancestor(level) != tile.path) continue;
     const auto found = tiles_.find(tile.path);
     if (found == tiles_.end()) return std::nullopt;
+    const glm::dvec2 at = placeInTile(tile.path, *direction);
     const GroundMesh& ground = found->second.ground;
     const auto above = level > 0 ? tiles_.find(tile.path.parent()) : tiles_.end();
-    if (above == tiles_.end()) return ground.heightMeters(*direction, at.u, at.v, radiusMeters);
-    return ground.morphedHeightMeters(*direction, at.u, at.v, radiusMeters, tile.morph, above->second.ground,
+    if (above == tiles_.end()) return ground.heightMeters(*direction, at.x, at.y, radiusMeters);
+    return ground.morphedHeightMeters(*direction, at.x, at.y, radiusMeters, tile.morph, above->second.ground,
                                       tile.path.digit(level - 1));
   }
   return std::nullopt;

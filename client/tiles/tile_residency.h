@@ -64,9 +64,9 @@ class TileResidency {
     double heightMeters = 0;
     int level = 0;
   };
-  /// Of the finest cube tile under a direction of any length, body frame. Empty if there is none, or for a direction of
-  /// no length.
-  std::optional<Ground> groundBelow(const glm::dvec3& directionBody, double radiusMeters) const;
+  /// Of the finest tile of a scheme under a direction of any length, body frame. Empty if there is none, or for a
+  /// direction of no length.
+  std::optional<Ground> groundBelow(const glm::dvec3& directionBody, double radiusMeters, Scheme scheme) const;
   /// Of that one of the drawn tiles which is under the direction, as it is drawn; empty if none is.
   std::optional<double> drawnHeightBelow(const glm::dvec3& directionBody, double radiusMeters,
                                          const std::vector<DrawnTile>& drawn) const;

@@ -357,15 +357,16 @@ TilePtr TileStream::tile(const FacePath& path) const { return state_->residency.
 
 std::optional<TileStream::Ground> TileStream::groundBelow(const glm::dvec3& directionBody) const {
   const BodyInfo* body = state_->body;
-  if (!body || body->selection.scheme != Scheme::Cube) return std::nullopt;
-  const auto ground = state_->residency.groundBelow(directionBody, body->selection.radiusMeters);
+  if (!body) return std::nullopt;
+  const auto ground =
+      state_->residency.groundBelow(directionBody, body->selection.radiusMeters, body->selection.scheme);
   return ground ? std::optional(Ground{ground->heightMeters, ground->level}) : std::nullopt;
 }
 
 std::optional<double> TileStream::drawnHeightBelow(const glm::dvec3& directionBody,
                                                    const std::vector<DrawnTile>& drawn) const {
   const BodyInfo* body = state_->body;
-  if (!body || body->selection.scheme != Scheme::Cube) return std::nullopt;
+  if (!body) return std::nullopt;
   return state_->residency.drawnHeightBelow(directionBody, body->selection.radiusMeters, drawn);
 }
 

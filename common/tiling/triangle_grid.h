@@ -26,6 +26,9 @@ constexpr GridVertex edgeVertex(int cells, int edge, int k) noexcept {
   return edge == 1 ? GridVertex{0, cells - k} : GridVertex{k, 0};
 }
 
+/// The digit of a triangle's child in the middle, which is turned round.
+inline constexpr int kCentreChild = 3;
+
 /// The two vertices of the parent's grid between which a vertex of its child `digit` lies: the ends of an edge of the
 /// parent's grid in whose middle it is, or twice the vertex that it is. A child's grid splits each triangle of the
 /// parent's into four, so that no vertex lies inside one. Precondition: cells is even.
@@ -34,7 +37,7 @@ constexpr std::array<GridVertex, 2> parentGridVertices(int digit, int cells, con
   GridVertex at = vertex;
   if (digit == 1) at.i += cells;
   if (digit == 2) at.j += cells;
-  if (digit == 3) at = {cells - vertex.i, cells - vertex.j};
+  if (digit == kCentreChild) at = {cells - vertex.i, cells - vertex.j};
   // The parent's edge runs along i, along j, or, if both are odd, along their difference.
   const int stepI = vertex.i & 1;
   const int stepJ = (vertex.j & 1) != 0 && stepI != 0 ? -1 : vertex.j & 1;

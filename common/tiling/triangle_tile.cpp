@@ -3,8 +3,6 @@
 namespace terrane {
 namespace {
 
-constexpr int kCentreChild = 3;
-
 FaceWeights unitWeight(int corner) noexcept {
   FaceWeights weights(0);
   weights[corner] = 1;

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "common/tiling/face_path.h"
+#include "common/tiling/tile_grid.h"
 #include "common/tiling/tile_neighbours.h"
 
 namespace terrane {
@@ -23,16 +24,16 @@ struct TileMorph {
   bool operator==(const TileMorph&) const = default;
 };
 
-/// A tile's morph values by place: rows VMin, between, VMax of columns UMin, between, UMax.
-inline std::array<float, 9> morphByPlace(const TileMorph& morph) noexcept {
-  const auto of = [&](Side side) { return morph.sides[static_cast<std::size_t>(side)]; };
-  return {of(Side::UMinVMin), of(Side::VMin),     of(Side::UMaxVMin), of(Side::UMin),    morph.own,
-          of(Side::UMax),     of(Side::UMinVMax), of(Side::VMax),     of(Side::UMaxVMax)};
-}
-/// Of vertex (i, j) of a grid with so many vertices in a row.
-inline float morphAt(const std::array<float, 9>& byPlace, int side, int i, int j) noexcept {
-  const auto place = [side](int at) { return at == 0 ? 0u : at == side - 1 ? 2u : 1u; };
-  return byPlace[3 * place(j) + place(i)];
+/// A tile's morph values by the borders that a vertex is on (tile_grid.h); sums that no vertex has hold 0.
+using MorphByBorders = std::array<float, kBorderSets>;
+inline MorphByBorders morphByBorders(const TileGrid& grid, const TileMorph& morph) noexcept {
+  MorphByBorders values{};
+  values[0] = morph.own;
+  for (int k = 0; k < edgeCount(grid.scheme); ++k) {
+    values[grid.borderOf(k)] = morph.sides[static_cast<std::size_t>(k)];
+    values[grid.bordersOfCorner(k)] = morph.sides[static_cast<std::size_t>(kMostEdges + k)];
+  }
+  return values;
 }
 
 struct DrawnTile {

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "common/tiling/tile_at.h"
 #include "tests/capture/gl_fixture.h"
 #include "tests/capture/stitched_tiles.h"
 
@@ -20,13 +21,13 @@ namespace {
 constexpr int kWidth = 640, kHeight = 360;
 constexpr double kErrorPixels = 2;
 
-class CoverageTest : public GlTest {
+class CoverageTest : public GlTestOfSchemes {
  protected:
   static CoverageCount count(TileRenderer& renderer, const Camera& camera, const std::vector<FacePath>& paths,
                              Placement placement) {
-    for (const FacePath& path : paths) renderer.upload(moon().tile(path));
+    for (const FacePath& path : paths) renderer.upload(tiles().tile(path));
     return renderer.countCoverage(camera, paths, {.placement = placement, .skirts = true},
-                                  moon().selection().occluderRadiusMeters);
+                                  tiles().selection().occluderRadiusMeters);
   }
 };
 
@@ -35,7 +36,7 @@ int cameraCount() {
   return value == nullptr ? 12 : std::atoi(value);
 }
 
-TEST_F(CoverageTest, EverySettledViewIsClosedFromTwentyCentimetresToTenThousandKilometres) {
+TEST_P(CoverageTest, EverySettledViewIsClosedFromTwentyCentimetresToTenThousandKilometres) {
   constexpr unsigned kSeed = 20260801;
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -49,7 +50,8 @@ TEST_F(CoverageTest, EverySettledViewIsClosedFromTwentyCentimetresToTenThousandK
     SCOPED_TRACE(testing::Message() << "camera " << i << ": longitude " << pose.longitude << ", latitude "
                                     << pose.latitude << ", " << altitude << " m above ground, heading " << pose.heading
                                     << ", pitch " << pose.pitch);
-    TileSource source("moon");  // of its own: a full run would keep too many tiles
+    TileSource source(GetParam() == Scheme::Ico ? "moon-ico"
+                                                : "moon");  // of its own: a full run would keep too many tiles
     const Camera camera = source.cameraAboveGround(pose, kWidth, kHeight);
     const std::vector<FacePath> paths = source.settledTiles(camera, kErrorPixels);
     auto renderer = makeRenderer();
@@ -78,37 +80,34 @@ TEST_F(CoverageTest, EverySettledViewIsClosedFromTwentyCentimetresToTenThousandK
   EXPECT_GT(unstitched, 0u) << "the control";
 }
 
-TEST_F(CoverageTest, LeavingOutATileIsSeen) {
-  const Camera camera = moon().cameraAboveGround({0.5, 0.3, 500.0, 0, -90 * kDegree}, kWidth, kHeight);
-  const std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);
+TEST_P(CoverageTest, LeavingOutATileIsSeen) {
+  const Camera camera = tiles().cameraAboveGround({0.5, 0.3, 500.0, 0, -90 * kDegree}, kWidth, kHeight);
+  const std::vector<FacePath> paths = tiles().settledTiles(camera, kErrorPixels);
   auto renderer = makeRenderer();
   const CoverageCount whole = count(*renderer, camera, paths, Placement::Integer);
   EXPECT_EQ(whole.uncovered, 0u);
   // The tile under the camera.
-  const FaceCoordinates below = cubeFaceCoordinates(camera.positionBody);
   std::vector<FacePath> holed;
-  for (const FacePath& path : paths) {
-    const double width = std::ldexp(2.0, -path.level());
-    const bool isBelow = path.face() == below.face && std::floor((below.s + 1) / width) == path.column() &&
-                         std::floor((below.t + 1) / width) == path.row();
-    if (!isBelow) holed.push_back(path);
-  }
+  for (const FacePath& path : paths)
+    if (path != tileAt(GetParam(), camera.positionBody, path.level())) holed.push_back(path);
   ASSERT_EQ(holed.size() + 1, paths.size());
   const CoverageCount open =
-      renderer->countCoverage(camera, holed, {.skirts = true}, moon().selection().occluderRadiusMeters);
+      renderer->countCoverage(camera, holed, {.skirts = true}, tiles().selection().occluderRadiusMeters);
   EXPECT_GT(open.uncovered, 500u);
 }
 
-TEST_F(CoverageTest, TheBaselinePathCountsTheSame) {
-  const Camera camera = moon().cameraAboveGround({-1.0, 0.7, 50.0, 2.0, -10 * kDegree}, kWidth, kHeight);
-  const std::vector<FacePath> paths = moon().settledTiles(camera, kErrorPixels);
+TEST_P(CoverageTest, TheBaselinePathCountsTheSame) {
+  const Camera camera = tiles().cameraAboveGround({-1.0, 0.7, 50.0, 2.0, -10 * kDegree}, kWidth, kHeight);
+  const std::vector<FacePath> paths = tiles().settledTiles(camera, kErrorPixels);
   auto baseline = makeRenderer({}, {.forceBaseline = true});
   EXPECT_EQ(count(*baseline, camera, paths, Placement::Integer).uncovered, 0u);
-  for (const FacePath& path : paths) baseline->upload(moon().tile(path.parent()));
+  for (const FacePath& path : paths) baseline->upload(tiles().tile(path.parent()));
   EXPECT_EQ(
-      baseline->countCoverage(camera, stitchedTiles(paths), {}, moon().selection().occluderRadiusMeters).uncovered, 0u)
+      baseline->countCoverage(camera, stitchedTiles(paths), {}, tiles().selection().occluderRadiusMeters).uncovered, 0u)
       << "without skirts";
 }
+
+INSTANTIATE_TEST_SUITE_P(Schemes, CoverageTest, test::bothSchemes(), test::nameOfScheme);
 
 Camera plainCamera(double altitudeMeters, double pitch) {
   return cameraFromPose({0.4, -0.2, altitudeMeters, 0.7, pitch}, 1737400, 0.9, kWidth, kHeight);

@@ -18,7 +18,7 @@
 namespace terrane {
 namespace {
 
-constexpr int kWidth = 640, kHeight = 360, kSide = kGrainCells + 1;
+constexpr int kWidth = 640, kHeight = 360;
 constexpr double kMoonRadius = 1'737'400.0;
 constexpr std::uint64_t kSeed = 20261126;
 
@@ -82,13 +82,13 @@ double perMillion(const Image& a, const Image& b) {
 /// 64 bits of a coordinate: the reference.
 using Wide = std::array<long double, 3>;
 
-Wide morphedVertex(const Tile& tile, const Tile& parent, const TileMorph& morph, int vertex) {
-  const int i = vertex % kSide, j = vertex / kSide;
+Wide morphedVertex(const Tile& tile, const Tile& parent, const TileMorph& morph, const GridVertex& at) {
   const MorphGrid grid = *morphGrid(tile.metadata, parent.metadata);
-  const ParentVertices to = grid.parentVertices(i, j);
-  const auto share = static_cast<long double>(morphAt(morphByPlace(morph), kSide, i, j));
+  const ParentVertices to = grid.parentVertices(at);
+  const int vertex = grid.grid.index(at);
+  const auto share = static_cast<long double>(morphByBorders(grid.grid, morph)[grid.grid.borders(at)]);
   const auto step = static_cast<long double>(stepMeters(tile.metadata.stepExponent));
-  Wide at{};
+  Wide place{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
     const auto offset = [&](const Tile& of, int index) {
@@ -96,17 +96,21 @@ Wide morphedVertex(const Tile& tile, const Tile& parent, const TileMorph& morph,
     };
     const std::int64_t own = tile.metadata.origin[axis] + offset(tile, vertex);
     const std::int64_t target = 2 * parent.metadata.origin[axis] + offset(parent, to.first) + offset(parent, to.second);
-    at[k] = (static_cast<long double>(own) + share * static_cast<long double>(target - own)) * step;
+    place[k] = (static_cast<long double>(own) + share * static_cast<long double>(target - own)) * step;
   }
-  return at;
+  return place;
 }
 
 /// By every triangle that is drawn; the mesh must be in grid order, as the builder gives it.
 Wide groundAt(const Tile& tile, const Tile& parent, const TileMorph& morph, const std::vector<std::uint16_t>& triangles,
               const glm::dvec2& cells) {
+  std::vector<GridVertex> vertices;  // by grid index
+  const TileGrid grid{tile.metadata.path.scheme(), kGrainCells};
+  for (int j = 0; j <= grid.cells; ++j)
+    for (int i = 0; i <= grid.rowEnd(j); ++i) vertices.push_back({i, j});
   for (std::size_t t = 0; t < triangles.size(); t += 3) {
     std::array<glm::dvec2, 3> plan;
-    for (std::size_t k = 0; k < 3; ++k) plan[k] = {triangles[t + k] % kSide, triangles[t + k] / kSide};
+    for (std::size_t k = 0; k < 3; ++k) plan[k] = {vertices[triangles[t + k]].i, vertices[triangles[t + k]].j};
     const auto cross = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
     const double area = cross(plan[1] - plan[0], plan[2] - plan[0]);
     std::array<double, 3> weight{};
@@ -114,7 +118,7 @@ Wide groundAt(const Tile& tile, const Tile& parent, const TileMorph& morph, cons
     if (std::ranges::any_of(weight, [](double w) { return w < 0; })) continue;
     Wide sum{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Wide vertex = morphedVertex(tile, parent, morph, triangles[t + k]);
+      const Wide vertex = morphedVertex(tile, parent, morph, vertices[triangles[t + k]]);
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += static_cast<long double>(weight[k]) * vertex[axis];
     }
     return sum;
@@ -123,33 +127,35 @@ Wide groundAt(const Tile& tile, const Tile& parent, const TileMorph& morph, cons
   return {};
 }
 
-TEST_F(DustTest, GrainsStandOnTheGroundThatIsDrawn) {
+class DustOfSchemes : public DustTest, public testing::WithParamInterface<Scheme> {};
+
+TEST_P(DustOfSchemes, GrainsStandOnTheGroundThatIsDrawn) {
   // A double-float holds 48 bits of a coordinate: 2^-48 of the Moon's radius is 6.2 nm; sums in double take the rest.
   constexpr double kBoundMeters = 8e-9;
   std::mt19937_64 random(kSeed);
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
-  const GrainField field(moonDust(), kMoonRadius);
+  const GrainField field(moonDust(), kMoonRadius, GetParam());
+  TileSource& source = moon(GetParam());
   double worst = 0, moved = 0;
   std::size_t count = 0;
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 18; ++round) {
     const int level = 20 + round % 6;
-    const auto column = static_cast<std::uint32_t>(random() & ((1u << level) - 1)),
-               row = static_cast<std::uint32_t>(random() & ((1u << level) - 1));
-    const FacePath path = FacePath::cubeTile(round % 6, level, column, row);
-    const auto tile = moon().tile(path), parent = moon().tile(path.parent());
+    FacePath path = FacePath::wholeFace(GetParam(), round % 6);
+    while (path.level() < level) path = path.child(static_cast<int>(random() % 4));
+    const auto tile = source.tile(path), parent = source.tile(path.parent());
     GpuTiles tiles;
     tiles.upload(*tile);
     tiles.upload(*parent);
     TileMorph morph = morphedBy(0.125f * static_cast<float>(random() % 9));
-    morph.coarserEdges = static_cast<std::uint8_t>(random() % 16);
-    for (int edge = 0; edge < kEdgeCount; ++edge)
+    morph.coarserEdges = static_cast<std::uint8_t>(random() % (1u << edgeCount(GetParam())));
+    for (int edge = 0; edge < edgeCount(GetParam()); ++edge)
       if (((morph.coarserEdges >> edge) & 1) != 0) morph.sides[static_cast<std::size_t>(edge)] = 1;
     const auto draw = makeTileDraw(tiles, {path, morph}, false, 1u << 20);
     ASSERT_TRUE(draw);
     if (draw->parent == nullptr) continue;  // nothing morphs
     const TileGrains grains(field, *draw);
-    const std::vector<std::uint16_t> triangles = gridTriangles(kGrainCells, morph.coarserEdges),
-                                     unstitched = gridTriangles(kGrainCells, 0);
+    const std::vector<std::uint16_t> triangles = gridTriangles({GetParam(), kGrainCells}, morph.coarserEdges),
+                                     unstitched = gridTriangles({GetParam(), kGrainCells}, 0);
     std::size_t i = 0;
     for (int classLevel = field.coarsestClass(); classLevel <= level - kFinestClassBelow; ++classLevel) {
       std::vector<Grain> listed;
@@ -175,6 +181,8 @@ TEST_F(DustTest, GrainsStandOnTheGroundThatIsDrawn) {
   EXPECT_GT(moved, 100 * kBoundMeters);
 }
 
+INSTANTIATE_TEST_SUITE_P(Schemes, DustOfSchemes, test::bothSchemes(), test::nameOfScheme);
+
 TEST_F(DustTest, AGpuThatCannotAddDoubleFloatsIsGivenRootsFromTheCamera) {
   const Camera camera = cameraAbove(0.5, -40);
   GpuTiles tiles;
@@ -183,7 +191,8 @@ TEST_F(DustTest, AGpuThatCannotAddDoubleFloatsIsGivenRootsFromTheCamera) {
     tiles.upload(*moon().tile(path));
     draws.push_back(*makeTileDraw(tiles, {path, {}}, false, 1u << 20));
   }
-  DustInstances exact(moonDust(), kMoonRadius, false), relative(moonDust(), kMoonRadius, true);
+  DustInstances exact(moonDust(), kMoonRadius, Scheme::Cube, false),
+      relative(moonDust(), kMoonRadius, Scheme::Cube, true);
   exact.gather(camera, draws);
   relative.gather(camera, draws);
   std::size_t count = 0;
@@ -323,7 +332,7 @@ TEST_F(DustTest, GrainsCastShadowsAwayFromTheSunAndDimTheGroundAtTheirFoot) {
       const auto tiles = settled(*renderer, camera);
       const Image dusty = picture(*renderer, camera, tiles),
                   bare = picture(*renderer, camera, tiles, {.effectPasses = false});
-      DustInstances grains(settings, kMoonRadius, true);
+      DustInstances grains(settings, kMoonRadius, Scheme::Cube, true);
       GpuTiles uploaded;
       std::vector<TileDraw> draws;
       for (const DrawnTile& tile : tiles) {

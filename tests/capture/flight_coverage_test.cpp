@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "client/app/flight_plan.h"
+#include "tests/support/both_schemes.h"
 #include "tests/support/view_processes.h"
 
 namespace terrane {
@@ -26,7 +28,9 @@ int frameCount() {
   return value == nullptr ? 100 : std::max(2, std::atoi(value));
 }
 
-class FlightCoverage : public testing::TestWithParam<const char*> {
+using SchemeAndFlight = std::tuple<Scheme, const char*>;
+
+class FlightCoverage : public testing::TestWithParam<SchemeAndFlight> {
  protected:
   void SetUp() override { ASSERT_FALSE(server_.url.empty()) << server_.process->errors(); }
 
@@ -57,18 +61,23 @@ class FlightCoverage : public testing::TestWithParam<const char*> {
     return folder_ / "flight.txt";
   }
 
-  const RunningServer server_{"moon"};
+  static const char* flightName() { return std::get<1>(GetParam()); }
+
+  const RunningServer server_{std::get<0>(GetParam()) == Scheme::Ico ? "moon-ico" : "moon"};
   const TemporaryFolder folder_;
 };
 
-TEST_P(FlightCoverage, WhollyLoadedItShowsNoHole) { expectNoHole(GetParam(), {"--settle"}); }
+TEST_P(FlightCoverage, WhollyLoadedItShowsNoHole) { expectNoHole(flightName(), {"--settle"}); }
 
 TEST_P(FlightCoverage, WithLateTilesItShowsNoHole) {
-  expectNoHole(inOtherTime(GetParam()), {"--latency", "200", "--bandwidth", "2MB/s"});
+  expectNoHole(inOtherTime(flightName()), {"--latency", "200", "--bandwidth", "2MB/s"});
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, FlightCoverage, testing::Values("descent", "ground"),
-                         [](const auto& flight) { return std::string(flight.param); });
+INSTANTIATE_TEST_SUITE_P(BuiltIn, FlightCoverage,
+                         testing::Combine(test::bothSchemes(), testing::Values("descent", "ground")),
+                         [](const testing::TestParamInfo<SchemeAndFlight>& flight) {
+                           return std::string(schemeName(std::get<0>(flight.param))) + "_" + std::get<1>(flight.param);
+                         });
 
 }  // namespace
 }  // namespace terrane

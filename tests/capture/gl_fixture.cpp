@@ -14,9 +14,13 @@ void GlTest::TearDown() { EXPECT_EQ(gl::takeErrors(), ""); }
 
 Window& GlTest::window() { return **sharedWindow(); }
 
-TileSource& GlTest::moon() {
-  static TileSource source("moon");
-  return source;
+TileSource& GlTest::moon(Scheme scheme) {
+  if (scheme == Scheme::Ico) {
+    static TileSource triangles("moon-ico");
+    return triangles;
+  }
+  static TileSource squares("moon");
+  return squares;
 }
 
 std::unique_ptr<TileRenderer> GlTest::makeRenderer(const std::vector<EffectCall>& effects,

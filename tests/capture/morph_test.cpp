@@ -12,6 +12,7 @@
 #include "client/gl/image.h"
 #include "client/gl/render_target.h"
 #include "client/render/morph_grid.h"
+#include "common/tiling/tile_at.h"
 #include "proto/gltf_tile.h"
 #include "tests/capture/gl_fixture.h"
 #include "tests/capture/parent_tiles.h"
@@ -21,19 +22,20 @@ namespace terrane {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 360;
-constexpr int kCells = 64, kSide = kCells + 1;
+constexpr int kCells = 64;
 constexpr std::uint64_t kSeed = 20261126;
 using TilePointer = std::shared_ptr<const Tile>;
 
-class MorphTest : public GlTest {
+class MorphTest : public GlTestOfSchemes {
  protected:
   static TilePointer built(const FacePath& path) {
-    return std::make_shared<const Tile>(moon().builder().buildMesh(path).value());
+    return std::make_shared<const Tile>(tiles().builder().buildMesh(path).value());
   }
   /// Above the tile's middle by so many of its widths.
   static Camera cameraOver(const Tile& tile, double widths) {
     const glm::dvec3 at = tile.metadata.sphere.center;
-    const double width = nominalTileWidthMeters(moon().selection().radiusMeters, tile.metadata.path.level());
+    const double width =
+        nominalTileWidthMeters(moon().selection().radiusMeters, tile.metadata.path.level(), GetParam());
     const ViewPose pose{std::atan2(at.y, at.x), std::asin(at.z / glm::length(at)),
                         tile.metadata.heights.maxMeters + widths * width, 0.3, -80 * kDegree};
     return cameraFromPose(pose, moon().selection().radiusMeters, 0.9, kWidth, kHeight);
@@ -50,23 +52,26 @@ class MorphTest : public GlTest {
   }
 };
 
-TEST_F(MorphTest, EveryVertexMovesToAPointOfTheParentsMesh) {
+TEST_P(MorphTest, EveryVertexMovesToAPointOfTheParentsMesh) {
   std::mt19937_64 random(kSeed);
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
   std::size_t moved = 0, compared = 0;
-  for (int round = 0; round < kParentLevels; ++round) {
-    const TilePointer parent = built(parentOf(random, round));
+  for (int round = 0; round < parentLevels(GetParam()); ++round) {
+    const TilePointer parent = built(parentOf(GetParam(), random, round));
     for (int digit = 0; digit < 4; ++digit) {
       const TilePointer child = built(parent->metadata.path.child(digit));
       const auto grid = morphGrid(child->metadata, parent->metadata);
       ASSERT_TRUE(grid);
-      for (int j = 0; j < kSide; ++j) {
-        for (int i = 0; i < kSide; ++i, ++compared) {
-          const ParentVertices to = grid->parentVertices(i, j);
+      for (int j = 0; j <= kCells; ++j) {
+        for (int i = 0; i <= grid->grid.rowEnd(j); ++i, ++compared) {
+          const ParentVertices to = grid->parentVertices({i, j});
           LatticePoint target = child->metadata.origin + LatticePoint(grid->parentMinusOwn);
-          for (const int vertex : {to.first, to.second})
-            target += latticePoint(*parent, vertex % kSide, vertex / kSide) - parent->metadata.origin;
-          ASSERT_EQ(target, twiceMeshPoint(*parent, 2 * grid->firstColumn + i, 2 * grid->firstRow + j))
+          for (const int vertex : {to.first, to.second}) {
+            const std::uint16_t* offset = &parent->mesh.offsets[3 * static_cast<std::size_t>(vertex)];
+            target += LatticePoint(offset[0], offset[1], offset[2]);
+          }
+          const glm::ivec2 at = grid->firstInHalfCells() + grid->direction() * glm::ivec2(i, j);
+          ASSERT_EQ(target, twiceMeshPoint(*parent, at.x, at.y))
               << child->metadata.path.text() << " vertex " << i << ' ' << j;
           moved += target == latticePoint(*child, i, j) ? 0 : 1;
         }
@@ -82,8 +87,7 @@ TEST(MorphGrid, RefusesWhatDoesNotFit) {
   parent.stepExponent = 1;
   tile.path = parent.path.child(3);
   ASSERT_TRUE(morphGrid(tile, parent));
-  EXPECT_EQ(morphGrid(tile, parent)->firstColumn, 32);
-  EXPECT_EQ(morphGrid(tile, parent)->firstRow, 32);
+  EXPECT_EQ(morphGrid(tile, parent)->firstInHalfCells(), glm::ivec2(64, 64));
   TileMetadata other = parent;
   other.stepExponent = 0;
   EXPECT_FALSE(morphGrid(tile, other));
@@ -97,15 +101,16 @@ TEST(MorphGrid, RefusesWhatDoesNotFit) {
   EXPECT_FALSE(morphGrid(tile, parent)) << "an odd number of cells has no middle";
 }
 
-TEST_F(MorphTest, AVertexThatDoesNotMorphKeepsItsBitsInATileThatDoes) {
+TEST_P(MorphTest, AVertexThatDoesNotMorphKeepsItsBitsInATileThatDoes) {
   auto renderer = makeRenderer();
-  const TilePointer child = moon().tile(FacePath::cubeTile(3, 11, 700, 701));
+  const TilePointer child = tiles().tile(GetParam() == Scheme::Cube ? FacePath::cubeTile(3, 11, 700, 701)
+                                                                    : FacePath::parse("ico/3/01322310231").value());
   renderer->upload(child);
-  renderer->upload(moon().tile(child->metadata.path.parent()));
+  renderer->upload(tiles().tile(child->metadata.path.parent()));
   const Camera camera = cameraOver(*child, 0.1);
   for (const Placement placement : {Placement::Integer, Placement::DoubleFloat, Placement::Cpu, Placement::Float32}) {
     TileMorph corner;
-    corner.sides[static_cast<std::size_t>(Side::UMaxVMax)] = 0.5f;
+    corner.sides[static_cast<std::size_t>(kMostEdges + edgeCount(GetParam()) - 1)] = 0.5f;
     const auto plain = renderer->clipPositions(camera, {child->metadata.path, {}}, placement),
                morphed = renderer->clipPositions(camera, {child->metadata.path, corner}, placement);
     ASSERT_EQ(plain.size(), morphed.size());
@@ -130,17 +135,16 @@ PictureDifference compare(const Image& a, const Image& b) {
   return {rmsDifference(a, b), 1e6 * static_cast<double>(strong) / (static_cast<double>(a.rgb.size()) / 3)};
 }
 
-TEST_F(MorphTest, FourFullyMorphedChildrenLookLikeTheirParent) {
+TEST_P(MorphTest, FourFullyMorphedChildrenLookLikeTheirParent) {
   for (const bool baseline : {false, true}) {
     auto renderer = makeRenderer(moonSunlight(), {.forceBaseline = baseline});
     for (const int level : {1, 5, 12, 20}) {
-      const auto line = (std::uint32_t{1} << level) / 2;
-      const TilePointer parent = moon().tile(FacePath::cubeTile(0, level, line, line));
+      const TilePointer parent = tiles().tile(tileAt(GetParam(), glm::dvec3(0.9, 0.02, 0.01), level));
       renderer->upload(parent);
       std::vector<DrawnTile> morphed, own;
       for (int digit = 0; digit < 4; ++digit) {
         const FacePath child = parent->metadata.path.child(digit);
-        renderer->upload(moon().tile(child));
+        renderer->upload(tiles().tile(child));
         morphed.push_back({child, morphedBy(1)});
         own.push_back({child, {}});
       }
@@ -160,9 +164,9 @@ TEST_F(MorphTest, FourFullyMorphedChildrenLookLikeTheirParent) {
   }
 }
 
-TEST_F(MorphTest, WhatCannotMorphIsDrawnAsItIsAndWithItsSkirts) {
+TEST_P(MorphTest, WhatCannotMorphIsDrawnAsItIsAndWithItsSkirts) {
   auto renderer = makeRenderer();
-  const TilePointer child = moon().tile(FacePath::cubeTile(1, 6, 20, 33));
+  const TilePointer child = tiles().tile(tileAt(GetParam(), glm::dvec3(-0.8, 0.1, 0.3), 6));
   const FacePath path = child->metadata.path;
   const Camera camera = cameraOver(*child, 1);
   auto target = RenderTarget::create(kWidth, kHeight);
@@ -171,44 +175,47 @@ TEST_F(MorphTest, WhatCannotMorphIsDrawnAsItIsAndWithItsSkirts) {
   const auto triangles = [&](const TileMorph& morph, const DrawSettings& settings = {}) {
     return renderer->draw(camera, std::vector<DrawnTile>{{path, morph}}, settings).triangles;
   };
-  constexpr std::size_t kSurface = 2 * kCells * kCells, kSkirts = 8 * kCells;
+  const std::size_t surface = (GetParam() == Scheme::Cube ? 2 : 1) * kCells * kCells,
+                    skirts = 2 * kCells * static_cast<std::size_t>(edgeCount(GetParam()));
   TileMorph stitched = morphedBy(0.5f);
   stitched.coarserEdges = 0b0101;
   renderer->upload(child);
-  EXPECT_EQ(triangles({}), kSurface);
-  EXPECT_EQ(triangles({}, {.skirts = true}), kSurface + kSkirts);
-  EXPECT_EQ(triangles(stitched), kSurface + kSkirts) << "its parent is not there";
+  EXPECT_EQ(triangles({}), surface);
+  EXPECT_EQ(triangles({}, {.skirts = true}), surface + skirts);
+  EXPECT_EQ(triangles(stitched), surface + skirts) << "its parent is not there";
   const auto own = renderer->clipPositions(camera, {path, {}}, Placement::Integer);
   EXPECT_EQ(renderer->clipPositions(camera, {path, stitched}, Placement::Integer), own);
-  renderer->upload(moon().tile(path.parent()));
-  EXPECT_EQ(triangles(stitched), kSurface - kCells);
+  renderer->upload(tiles().tile(path.parent()));
+  EXPECT_EQ(triangles(stitched), surface - kCells);
   EXPECT_NE(renderer->clipPositions(camera, {path, stitched}, Placement::Integer), own);
 
   Tile holed = *child;
   holed.mesh.triangles.erase(holed.mesh.triangles.begin(), holed.mesh.triangles.begin() + 3);
   renderer->upload(std::make_shared<const Tile>(holed));
-  EXPECT_EQ(triangles({}), kSurface + kSkirts - 1) << "no grid: its own triangles";
-  EXPECT_EQ(triangles(stitched), kSurface + kSkirts - 1);
+  EXPECT_EQ(triangles({}), surface + skirts - 1) << "no grid: its own triangles";
+  EXPECT_EQ(triangles(stitched), surface + skirts - 1);
 
-  const FacePath face = FacePath::wholeFace(Scheme::Cube, 1);
-  renderer->upload(moon().tile(face));
-  EXPECT_EQ(renderer->draw(camera, std::vector<DrawnTile>{{face, stitched}}, {}).triangles, kSurface)
+  const FacePath face = FacePath::wholeFace(GetParam(), 1);
+  renderer->upload(tiles().tile(face));
+  EXPECT_EQ(renderer->draw(camera, std::vector<DrawnTile>{{face, stitched}}, {}).triangles, surface)
       << "a whole face has no parent";
   RenderTarget::bindWindow();
 }
 
-TEST_F(MorphTest, TilesThatCameOverTheWireLieInGridOrderToo) {
+TEST_P(MorphTest, TilesThatCameOverTheWireLieInGridOrderToo) {
   auto renderer = makeRenderer();
-  const FacePath path = FacePath::cubeTile(4, 9, 100, 300);
+  const FacePath path = tileAt(GetParam(), glm::dvec3(0.3, -0.2, 0.9), 9);
   const TilePointer tile = built(path);
   const Camera camera = cameraOver(*tile, 1);
   renderer->upload(tile);
   const auto asBuilt = renderer->clipPositions(camera, {path, {}}, Placement::Integer);
-  const auto decoded = std::make_shared<const Tile>(decodeTile(moon().builder().build(path).value().glb).value());
+  const auto decoded = std::make_shared<const Tile>(decodeTile(tiles().builder().build(path).value().glb).value());
   ASSERT_NE(decoded->mesh.gridIndices, tile->mesh.gridIndices) << "Draco has an order of its own";
   renderer->upload(decoded);
   EXPECT_EQ(renderer->clipPositions(camera, {path, {}}, Placement::Integer), asBuilt);
 }
+
+INSTANTIATE_TEST_SUITE_P(Schemes, MorphTest, test::bothSchemes(), test::nameOfScheme);
 
 }  // namespace
 }  // namespace terrane

@@ -21,7 +21,7 @@ namespace terrane {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 360;
-constexpr int kCells = 64, kSide = kCells + 1;
+constexpr int kCells = 64;
 constexpr std::uint64_t kSeed = 20261126;
 constexpr std::array kExactPlacements{Placement::Integer, Placement::DoubleFloat, Placement::Cpu};
 using TilePointer = std::shared_ptr<const Tile>;
@@ -48,7 +48,7 @@ TilePointer built(const TileBuilder& builder, const FacePath& path) {
 /// Above the tile's middle by so many of its widths.
 Camera cameraOver(const Tile& tile, double bodyRadius, double widths) {
   const glm::dvec3 at = tile.metadata.sphere.center;
-  const double width = nominalTileWidthMeters(bodyRadius, tile.metadata.path.level());
+  const double width = nominalTileWidthMeters(bodyRadius, tile.metadata.path.level(), tile.metadata.path.scheme());
   const ViewPose pose{std::atan2(at.y, at.x), std::asin(at.z / glm::length(at)),
                       tile.metadata.heights.maxMeters + widths * width, 0.3, -80 * kDegree};
   return cameraFromPose(pose, bodyRadius, 0.9, kWidth, kHeight);
@@ -58,10 +58,10 @@ Camera cameraOver(const Tile& tile, double bodyRadius, double widths) {
 template <class Odd>
 void compareVertices(const MorphGrid& grid, std::span<const float> own, std::span<const float> parents,
                      Differences& found, const Odd& odd) {
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const ParentVertices to = grid.parentVertices(i, j);
-      const auto vertex = own.subspan(4 * static_cast<std::size_t>(j * kSide + i), 4),
+  for (int j = 0; j <= kCells; ++j) {
+    for (int i = 0; i <= grid.grid.rowEnd(j); ++i) {
+      const ParentVertices to = grid.parentVertices({i, j});
+      const auto vertex = own.subspan(4 * static_cast<std::size_t>(grid.grid.index({i, j})), 4),
                  first = parents.subspan(4 * static_cast<std::size_t>(to.first), 4),
                  second = parents.subspan(4 * static_cast<std::size_t>(to.second), 4);
       if (to.first != to.second) {
@@ -80,7 +80,7 @@ void compareVertices(const MorphGrid& grid, std::span<const float> own, std::spa
 }
 
 /// A child between its parent and itself, as one camera sees it.
-class MorphToParent : public GlTest {
+class MorphToParent : public GlTestOfSchemes {
  protected:
   struct Pair {
     TileRenderer& renderer;
@@ -104,8 +104,8 @@ class MorphToParent : public GlTest {
     const double camera =
         pair.placement == Placement::DoubleFloat ? glm::length(pair.camera.positionBody) * 0x1p-24 : 0;
     compareVertices(pair.grid, own, parents, found, [&](int i, int j, std::span<const float> vertex, auto, auto) {
-      const LatticePoint target =
-          twiceMeshPoint(*pair.parent, 2 * pair.grid.firstColumn + i, 2 * pair.grid.firstRow + j);
+      const glm::ivec2 at = pair.grid.firstInHalfCells() + pair.grid.direction() * glm::ivec2(i, j);
+      const LatticePoint target = twiceMeshPoint(*pair.parent, at.x, at.y);
       const glm::dvec3 relative = glm::dvec3(target) * step - pair.camera.positionBody;
       const double distance = glm::length(relative) + camera + 1000 * step;  // and the way that it moved
       const glm::dvec3 clip(projection[0][0] * glm::dot(pair.camera.right, relative),
@@ -133,20 +133,20 @@ class MorphToParent : public GlTest {
   }
 };
 
-TEST_F(MorphToParent, GivesItsBits) {
+TEST_P(MorphToParent, GivesItsBits) {
   std::mt19937_64 random(kSeed);
   std::printf("seed %llu, %zu children\n", static_cast<unsigned long long>(kSeed), childrenToCompare());
   auto renderer = makeRenderer(moonSunlight());
   std::array<Found, kExactPlacements.size()> found;
   std::set<int> levels, faces;
   for (std::size_t round = 0; 4 * round < childrenToCompare(); ++round) {
-    const TilePointer parent = built(moon().builder(), parentOf(random, static_cast<int>(round)));
+    const TilePointer parent = built(tiles().builder(), parentOf(GetParam(), random, static_cast<int>(round)));
     const double widths = std::ldexp(1.0, static_cast<int>(random() % 8) - 5);
-    const Camera camera = cameraOver(*parent, moon().selection().radiusMeters, widths);
+    const Camera camera = cameraOver(*parent, tiles().selection().radiusMeters, widths);
     renderer->clear();
     renderer->upload(parent);
     for (int digit = 0; digit < 4; ++digit) {
-      const TilePointer child = built(moon().builder(), parent->metadata.path.child(digit));
+      const TilePointer child = built(tiles().builder(), parent->metadata.path.child(digit));
       levels.insert(child->metadata.path.level());
       faces.insert(child->metadata.path.face());
       renderer->upload(child);
@@ -160,9 +160,10 @@ TEST_F(MorphToParent, GivesItsBits) {
       }
     }
   }
-  if (childrenToCompare() >= 4 * kParentLevels) {
-    EXPECT_EQ(levels.size(), std::size_t{kParentLevels});
-    EXPECT_EQ(faces.size(), 6u);
+  const auto levelCount = static_cast<std::size_t>(parentLevels(GetParam()));
+  if (childrenToCompare() >= 4 * levelCount) {
+    EXPECT_EQ(levels.size(), levelCount);
+    EXPECT_EQ(faces.size(), static_cast<std::size_t>(faceCount(GetParam())));
   }
   for (std::size_t i = 0; i < kExactPlacements.size(); ++i) {
     const std::string name(placementName(kExactPlacements[i]));
@@ -180,6 +181,8 @@ TEST_F(MorphToParent, GivesItsBits) {
     EXPECT_GT(control.worst, 1000 * kShadingBound) << name;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Schemes, MorphToParent, test::bothSchemes(), test::nameOfScheme);
 
 }  // namespace
 }  // namespace terrane

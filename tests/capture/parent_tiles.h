@@ -10,11 +10,11 @@
 
 namespace terrane {
 
-/// The parent number `round` of a test. Levels 0 to 29, so that children reach the Moon's finest, 30, one after
-/// another; by 30 rounds inside, at both kinds of edge and at corners of every face are among them, by 720 all of these
-/// at every level. random: where exactly.
-FacePath parentOf(std::mt19937_64& random, int round);
-inline constexpr int kParentLevels = 30;
+/// The parent number `round` of a test. Levels from 0, so that children reach the Moon's finest, 30 or 29, one after
+/// another; by 30 rounds inside, at edges and at corners of every face are among them, by 720 (cube) all of these at
+/// every level. random: where exactly.
+FacePath parentOf(Scheme scheme, std::mt19937_64& random, int round);
+constexpr int parentLevels(Scheme scheme) { return scheme == Scheme::Cube ? 30 : 29; }
 
 /// Vertex (i, j) of a complete grid whose vertices lie in grid order, in steps.
 LatticePoint latticePoint(const Tile& tile, int i, int j);

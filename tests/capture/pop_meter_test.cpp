@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <tuple>
 
 #include "tests/capture/gl_fixture.h"
 
@@ -23,14 +24,17 @@ int frameCount() {
   return text == nullptr ? 100 : std::clamp(std::atoi(text), 2, kPopFlightFrames);
 }
 
-class PopTest : public GlTest, public testing::WithParamInterface<PopFlight> {
+using SchemeAndFlight = std::tuple<Scheme, PopFlight>;
+
+class PopTest : public GlTest, public testing::WithParamInterface<SchemeAndFlight> {
  protected:
   static Pops fly(TileSource& tiles, Transition transition, int frames) {
-    const Pops pops = PopMeter(tiles, GetParam(), transition, kWidth, kHeight).fly(frames);
+    const PopFlight flight = std::get<1>(GetParam());
+    const Pops pops = PopMeter(tiles, flight, transition, kWidth, kHeight).fly(frames);
     std::printf(
         "%s, %s, %d frames: %d changes, RMS worst %.3f, median %.3f of 255, worst %.1f pixels per million over 8, %llu "
         "hurried, %llu jumps, %llu uncovered pixels\n",
-        std::string(popFlightName(GetParam())).c_str(), std::string(transitionName(transition)).c_str(), pops.frames,
+        std::string(popFlightName(flight)).c_str(), std::string(transitionName(transition)).c_str(), pops.frames,
         pops.changes, pops.worstRms, pops.medianRms, pops.worstPerMillion,
         static_cast<unsigned long long>(pops.hurried), static_cast<unsigned long long>(pops.jumps),
         static_cast<unsigned long long>(pops.uncovered));
@@ -40,7 +44,7 @@ class PopTest : public GlTest, public testing::WithParamInterface<PopFlight> {
 };
 
 TEST_P(PopTest, NoChangeOfTheDrawnSetIsSeenThoughTilesComeLate) {
-  TileSource tiles("moon");
+  TileSource tiles(std::get<0>(GetParam()) == Scheme::Ico ? "moon-ico" : "moon");
   const Pops morphed = fly(tiles, Transition::Morph, frameCount());
   EXPECT_GE(morphed.changes, 8);
   EXPECT_LE(morphed.worstRms, 1.0);
@@ -49,9 +53,11 @@ TEST_P(PopTest, NoChangeOfTheDrawnSetIsSeenThoughTilesComeLate) {
   EXPECT_GT(fly(tiles, Transition::None, kControlFrames).worstPerMillion, 1000.0) << "the control";
 }
 
-INSTANTIATE_TEST_SUITE_P(Flights, PopTest, testing::ValuesIn(kPopFlights), [](const auto& flight) {
-  return flight.param == PopFlight::Walk ? std::string("Walk") : std::string("Descent");
-});
+INSTANTIATE_TEST_SUITE_P(Flights, PopTest, testing::Combine(test::bothSchemes(), testing::ValuesIn(kPopFlights)),
+                         [](const testing::TestParamInfo<SchemeAndFlight>& flight) {
+                           const bool walks = std::get<1>(flight.param) == PopFlight::Walk;
+                           return std::string(schemeName(std::get<0>(flight.param))) + (walks ? "_Walk" : "_Descent");
+                         });
 
 }  // namespace
 }  // namespace terrane

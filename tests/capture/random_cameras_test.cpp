@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/both_schemes.h"
 #include "tests/support/view_processes.h"
 
 namespace terrane {
@@ -35,10 +36,12 @@ std::string randomFlight(std::uint64_t seed, std::uint64_t count) {
   return text;
 }
 
-TEST(RandomCameras, ShowNoHoleAtAnyHeightAndPitch) {
+class RandomCameras : public testing::TestWithParam<Scheme> {};
+
+TEST_P(RandomCameras, ShowNoHoleAtAnyHeightAndPitch) {
   const std::uint64_t count = setting("TERRANE_CAMERAS", 12), seed = setting("TERRANE_SEED", 20260711);
   fmt::print("cameras {}, seed {}\n", count, seed);
-  const RunningServer server("moon");
+  const RunningServer server(GetParam() == Scheme::Ico ? "moon-ico" : "moon");
   ASSERT_FALSE(server.url.empty()) << server.process->errors();
   const TemporaryFolder folder;
   std::ofstream(folder / "cameras.txt") << randomFlight(seed, count);
@@ -52,6 +55,8 @@ TEST(RandomCameras, ShowNoHoleAtAnyHeightAndPitch) {
   EXPECT_EQ(jsonNumber(json, "framesCounted"), static_cast<double>(count));
   EXPECT_EQ(jsonNumber(json, "uncoveredPixels"), 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(Schemes, RandomCameras, test::bothSchemes(), test::nameOfScheme);
 
 }  // namespace
 }  // namespace terrane

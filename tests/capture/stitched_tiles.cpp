@@ -1,20 +1,11 @@
 #include "tests/capture/stitched_tiles.h"
 
-#include <initializer_list>
-#include <optional>
+#include <array>
 
 #include "common/view/tile_borders.h"
 
 namespace terrane {
 namespace {
-
-struct CornerSides {
-  Side corner, uEdge, vEdge;
-};
-constexpr CornerSides kCorners[] = {{Side::UMinVMin, Side::UMin, Side::VMin},
-                                    {Side::UMaxVMin, Side::UMax, Side::VMin},
-                                    {Side::UMinVMax, Side::UMin, Side::VMax},
-                                    {Side::UMaxVMax, Side::UMax, Side::VMax}};
 
 DrawnCut cutOf(std::span<const FacePath> paths) {
   DrawnCut cut;
@@ -23,13 +14,15 @@ DrawnCut cutOf(std::span<const FacePath> paths) {
 }
 
 /// In 0..1, of a set of tiles in any order.
-float randomShare(std::uint64_t seed, std::initializer_list<std::optional<FacePath>> tiles) {
-  std::uint64_t sum = seed;
-  for (const auto& tile : tiles)
-    if (tile) sum += std::hash<FacePath>()(*tile);
-  sum *= 0x9E3779B97F4A7C15ull;
-  return static_cast<float>(sum >> 40) * 0x1p-24f;
-}
+class RandomShare {
+ public:
+  explicit RandomShare(std::uint64_t seed) : sum_(seed) {}
+  void add(const FacePath& tile) { sum_ += std::hash<FacePath>()(tile); }
+  float value() const { return static_cast<float>((sum_ * 0x9E3779B97F4A7C15ull) >> 40) * 0x1p-24f; }
+
+ private:
+  std::uint64_t sum_;
+};
 
 }  // namespace
 
@@ -45,23 +38,23 @@ std::vector<DrawnTile> tilesOnTheirWay(std::span<const FacePath> paths, std::uin
   std::vector<DrawnTile> tiles = stitchedTiles(paths);
   for (DrawnTile& tile : tiles) {
     const FacePath& path = tile.path;
-    const auto isFiner = [&](Side side) {
-      const auto beside = path.neighbour(side);
-      return beside && drawnAt(cut, *beside) == DrawnThere::Finer;
-    };
-    tile.morph.own = randomShare(seed, {path});
-    const auto set = [&](Side side, bool finer, float share) {
+    const auto set = [&](int side, std::span<const FacePath> beyond) {
+      RandomShare share(seed);
+      share.add(path);
+      bool finer = false;
+      for (const FacePath& other : beyond) {
+        share.add(other);
+        finer = finer || drawnAt(cut, other) == DrawnThere::Finer;
+      }
       float& value = tile.morph.sides[static_cast<std::size_t>(side)];
-      if (value != 1) value = finer ? 0 : share;
+      if (value != 1) value = finer ? 0 : share.value();
     };
-    for (unsigned edge = 0; edge < kEdgeCount; ++edge) {
-      const Side side = static_cast<Side>(edge);
-      set(side, isFiner(side), randomShare(seed, {path, path.neighbour(side)}));
-    }
-    for (const CornerSides& at : kCorners) {
-      const bool finer = isFiner(at.corner) || isFiner(at.uEdge) || isFiner(at.vEdge);
-      set(at.corner, finer,
-          randomShare(seed, {path, path.neighbour(at.corner), path.neighbour(at.uEdge), path.neighbour(at.vEdge)}));
+    RandomShare own(seed);
+    own.add(path);
+    tile.morph.own = own.value();
+    for (int k = 0; k < edgeCount(path.scheme()); ++k) {
+      set(k, std::array{tileBeyondEdge(path, k)});
+      set(kMostEdges + k, tilesAtCorner(path, k).tiles());
     }
   }
   return tiles;

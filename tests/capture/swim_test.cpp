@@ -18,15 +18,15 @@ int frameCount() {
   return text == nullptr ? 30 : std::atoi(text);
 }
 
-class SwimMeter : public GlTest {};
+class SwimMeter : public GlTestOfSchemes {};
 
-TEST_F(SwimMeter, ATexelStaysWithinATwentiethOfAPixelOfItsPlaceFromHalfAMetreToOrbit) {
+TEST_P(SwimMeter, ATexelStaysWithinATwentiethOfAPixelOfItsPlaceFromHalfAMetreToOrbit) {
   for (const double height : {0.2, 0.5, 100.0, 1e5}) {
     test::SwimSettings settings{.heightMeters = height, .frames = frameCount()};
-    const test::Swim swim = require(test::measureSwim(moon(), settings));
+    const test::Swim swim = require(test::measureSwim(tiles(), settings));
     settings.coordinates = test::TextureCoordinates::Float32;
     settings.frames = 10;
-    const test::Swim control = require(test::measureSwim(moon(), settings));
+    const test::Swim control = require(test::measureSwim(tiles(), settings));
     std::printf(
         "%g m: %d frames, %d level changes, wavelength %g m: worst %.5f, median %.5f pixels; float32 worst %.4g, "
         "median %.4g\n",
@@ -39,6 +39,8 @@ TEST_F(SwimMeter, ATexelStaysWithinATwentiethOfAPixelOfItsPlaceFromHalfAMetreToO
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Schemes, SwimMeter, test::bothSchemes(), test::nameOfScheme);
 
 }  // namespace
 }  // namespace terrane

@@ -10,55 +10,62 @@
 #include <random>
 #include <set>
 
+#include "common/tiling/tile_at.h"
 #include "tests/capture/gl_fixture.h"
 
 namespace terrane {
 namespace {
 
-struct Corner {
-  int i, j;
-};
-Corner cornerOf(std::uint16_t index, int cells) { return {index % (cells + 1), index / (cells + 1)}; }
-
 /// Twice the area, positive if counter-clockwise.
-int areaOf(Corner a, Corner b, Corner c) { return (b.i - a.i) * (c.j - a.j) - (c.i - a.i) * (b.j - a.j); }
+int areaOf(const GridVertex& a, const GridVertex& b, const GridVertex& c) {
+  return (b.i - a.i) * (c.j - a.j) - (c.i - a.i) * (b.j - a.j);
+}
+
+std::vector<GridVertex> byIndex(const TileGrid& grid) {
+  std::vector<GridVertex> vertices(static_cast<std::size_t>(grid.vertexCount()));
+  for (int j = 0; j <= grid.cells; ++j)
+    for (int i = 0; grid.has({i, j}); ++i) vertices[static_cast<std::size_t>(grid.index({i, j}))] = {i, j};
+  return vertices;
+}
 
 /// Counter-clockwise around the grid, without the odd vertices of coarser edges: directed edges from vertex to vertex.
-std::set<std::pair<int, int>> expectedBorder(int cells, unsigned coarserEdges) {
+std::set<std::pair<int, int>> expectedBorder(const TileGrid& grid, unsigned coarserEdges) {
   std::set<std::pair<int, int>> border;
-  for (int edge = 0; edge < kEdgeCount; ++edge) {
-    const int stride = ((coarserEdges >> edge) & 1u) != 0 ? 2 : 1;
-    for (int k = 0; k < cells; k += stride) {
-      const int next = k + stride, side = cells + 1;
+  for (int edge = 0; edge < edgeCount(grid.scheme); ++edge) {
+    const int stride = ((coarserEdges >> edge) & 1u) != 0 ? 2 : 1, cells = grid.cells;
+    const auto at = [&](int k) {  // counter-clockwise
+      if (!grid.isSquare()) return grid.index(edgeVertex(cells, edge, k));
       switch (static_cast<Side>(edge)) {
         case Side::UMin:
-          border.emplace(next * side, k * side);
-          break;
+          return grid.index({0, cells - k});
         case Side::UMax:
-          border.emplace(k * side + cells, next * side + cells);
-          break;
+          return grid.index({cells, k});
         case Side::VMin:
-          border.emplace(k, next);
-          break;
+          return grid.index({k, 0});
         default:
-          border.emplace(cells * side + next, cells * side + k);
-          break;
+          return grid.index({cells - k, cells});
       }
-    }
+    };
+    for (int k = 0; k < cells; k += stride) border.emplace(at(k), at(k + stride));
   }
   return border;
 }
 
-TEST(TileIndices, EveryStitchingCoversTheGridOnceAndMeetsItsNeighboursVertexForVertex) {
+class TileIndicesOfGrids : public testing::TestWithParam<Scheme> {};
+
+TEST_P(TileIndicesOfGrids, EveryStitchingCoversTheGridOnceAndMeetsItsNeighboursVertexForVertex) {
+  const int trianglesInCell = GetParam() == Scheme::Cube ? 2 : 1;  // on average
   for (const int cells : {2, 4, 16, 64}) {
-    for (unsigned edges = 0; edges < 16; ++edges) {
-      const std::vector<std::uint16_t> indices = gridTriangles(cells, edges);
-      EXPECT_EQ(indices.size() / 3, static_cast<std::size_t>(2 * cells * cells - cells / 2 * std::popcount(edges)));
+    const TileGrid grid{GetParam(), cells};
+    const std::vector<GridVertex> vertices = byIndex(grid);
+    for (unsigned edges = 0; edges < 1u << edgeCount(GetParam()); ++edges) {
+      const std::vector<std::uint16_t> indices = gridTriangles(grid, edges);
+      EXPECT_EQ(indices.size() / 3,
+                static_cast<std::size_t>(trianglesInCell * cells * cells - cells / 2 * std::popcount(edges)));
       int area = 0;
       std::set<std::pair<int, int>> open;
       for (std::size_t t = 0; t < indices.size(); t += 3) {
-        const int twice =
-            areaOf(cornerOf(indices[t], cells), cornerOf(indices[t + 1], cells), cornerOf(indices[t + 2], cells));
+        const int twice = areaOf(vertices.at(indices[t]), vertices.at(indices[t + 1]), vertices.at(indices[t + 2]));
         ASSERT_GT(twice, 0) << "a triangle turned over, " << cells << " cells, edges " << edges;
         area += twice;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -67,17 +74,19 @@ TEST(TileIndices, EveryStitchingCoversTheGridOnceAndMeetsItsNeighboursVertexForV
           ASSERT_TRUE(closes || open.emplace(from, to).second);
         }
       }
-      EXPECT_EQ(area, 2 * cells * cells) << cells << " cells, edges " << edges;
-      EXPECT_EQ(open, expectedBorder(cells, edges)) << cells << " cells, edges " << edges;
+      EXPECT_EQ(area, trianglesInCell * cells * cells) << cells << " cells, edges " << edges;
+      EXPECT_EQ(open, expectedBorder(grid, edges)) << cells << " cells, edges " << edges;
     }
   }
 }
 
-class TileIndicesOfMeshes : public GlTest {};
+INSTANTIATE_TEST_SUITE_P(Schemes, TileIndicesOfGrids, test::bothSchemes(), test::nameOfScheme);
 
-TEST_F(TileIndicesOfMeshes, AGridIsKnownInAnyOrderAndNothingElseIsTakenForOne) {
-  const TileMesh& built = moon().tile(FacePath::cubeTile(2, 3, 1, 5))->mesh;
-  constexpr int kCells = 64;
+class TileIndicesOfMeshes : public GlTestOfSchemes {};
+
+TEST_P(TileIndicesOfMeshes, AGridIsKnownInAnyOrderAndNothingElseIsTakenForOne) {
+  const TileMesh& built = tiles().tile(tileAt(GetParam(), glm::dvec3(0.2, 0.9, 0.1), 3))->mesh;
+  const TileGrid grid{GetParam(), 64};
   constexpr unsigned kSeed = 91;
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
@@ -88,24 +97,27 @@ TEST_F(TileIndicesOfMeshes, AGridIsKnownInAnyOrderAndNothingElseIsTakenForOne) {
   for (std::size_t i = 0; i < places.size(); ++i) mesh.gridIndices[places[i]] = built.gridIndices[i];
   for (std::uint32_t& vertex : mesh.triangles) vertex = places[vertex];
   std::rotate(mesh.triangles.begin(), mesh.triangles.begin() + 3 * 777, mesh.triangles.end());
-  const auto order = verticesInGridOrder(mesh, kCells);
+  const auto order = verticesInGridOrder(mesh, grid);
   ASSERT_TRUE(order);
   for (std::size_t g = 0; g < order->size(); ++g) ASSERT_EQ((*order)[g], places[g]);
 
-  EXPECT_FALSE(verticesInGridOrder(mesh, kCells - 1));
+  EXPECT_FALSE(verticesInGridOrder(mesh, {GetParam(), 63}));
+  EXPECT_FALSE(verticesInGridOrder(mesh, {GetParam() == Scheme::Cube ? Scheme::Ico : Scheme::Cube, 64}));
   TileMesh wrong = mesh;
   wrong.gridIndices[0] = wrong.gridIndices[1];
-  EXPECT_FALSE(verticesInGridOrder(wrong, kCells)) << "one place taken twice";
+  EXPECT_FALSE(verticesInGridOrder(wrong, grid)) << "one place taken twice";
   wrong = mesh;
   std::swap(wrong.triangles[30], wrong.triangles[31]);
-  EXPECT_FALSE(verticesInGridOrder(wrong, kCells)) << "a triangle turned over";
+  EXPECT_FALSE(verticesInGridOrder(wrong, grid)) << "a triangle turned over";
   wrong = mesh;
   wrong.triangles.resize(wrong.triangles.size() - 3);
-  EXPECT_FALSE(verticesInGridOrder(wrong, kCells)) << "a triangle missing";
+  EXPECT_FALSE(verticesInGridOrder(wrong, grid)) << "a triangle missing";
   wrong = mesh;
   std::copy_n(wrong.triangles.begin(), 3, wrong.triangles.begin() + 3);
-  EXPECT_FALSE(verticesInGridOrder(wrong, kCells)) << "a triangle twice";
+  EXPECT_FALSE(verticesInGridOrder(wrong, grid)) << "a triangle twice";
 }
+
+INSTANTIATE_TEST_SUITE_P(Schemes, TileIndicesOfMeshes, test::bothSchemes(), test::nameOfScheme);
 
 }  // namespace
 }  // namespace terrane

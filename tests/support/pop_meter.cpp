@@ -111,8 +111,9 @@ PopMeter::PopMeter(TileSource& moon, PopFlight flight, Transition transition, in
       flight_(flightOf(flight, moon.selection().radiusMeters)),
       widthPixels_(widthPixels),
       heightPixels_(heightPixels),
-      renderer_(require(
-          TileRenderer::create(shippedScene("moon").effects, {.bodyRadiusMeters = moon.selection().radiusMeters}))),
+      renderer_(
+          require(TileRenderer::create(shippedScene("moon").effects, {.bodyRadiusMeters = moon.selection().radiusMeters,
+                                                                      .bodyScheme = moon.selection().scheme}))),
       target_(require(RenderTarget::create(widthPixels, heightPixels))) {
   settings_.transition = transition;
 }

@@ -158,17 +158,16 @@ glm::dvec3 SwimRun::groundAt(const glm::dvec2& pixelCentre, const glm::dvec3& ne
     const TileMetadata& tile = moon_.tile(drawn.path)->metadata;
     if (glm::distance(tile.sphere.center, nearBody) > 1.1 * tile.sphere.radiusMeters) continue;
     const std::vector<float> clip = renderer_->clipPositions(camera_, drawn, Placement::Integer);
-    const int side = tile.cellsPerEdge + 1;
-    const auto corner = [&](int i, int j) {
-      const float* at = clip.data() + 4 * static_cast<std::size_t>(j * side + i);
+    const TileGrid grid{tile.path.scheme(), tile.cellsPerEdge};
+    const auto corner = [&](const GridVertex& vertex) {
+      const float* at = clip.data() + 4 * static_cast<std::size_t>(grid.index(vertex));
       return rays * glm::dvec3(at[0], at[1], at[3]);
     };
-    for (int j = 0; j + 1 < side; ++j)
-      for (int i = 0; i + 1 < side; ++i) {
-        const glm::dvec3 low = corner(i, j), high = corner(i + 1, j + 1);
-        nearest = std::min({nearest, distanceToTriangle(ray, {low, corner(i + 1, j), high}),
-                            distanceToTriangle(ray, {low, high, corner(i, j + 1)})});
-      }
+    const auto meet = [&](const GridVertex& a, const GridVertex& b, const GridVertex& c) {
+      nearest = std::min(nearest, distanceToTriangle(ray, {corner(a), corner(b), corner(c)}));
+    };
+    for (int j = 0; j < grid.cells; ++j)
+      for (int i = 0; i < grid.rowEnd(j); ++i) grid.eachTriangle(i, j, meet);
   }
   return std::isfinite(nearest) ? ray * nearest : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
 }

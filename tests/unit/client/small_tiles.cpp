@@ -11,26 +11,37 @@
 #include <stdexcept>
 
 #include "common/tiling/cube_sphere.h"
+#include "common/tiling/ico_sphere.h"
 #include "common/tiling/lattice.h"
 #include "common/tiling/tile_bounds.h"
+#include "common/tiling/tile_grid.h"
 
 namespace terrane::testing {
 
-Tile smallTile(const FacePath& path, const HeightFormula& height, const SmallTileOptions& options) {
-  const int cells = options.cells, row = cells + 1;
+namespace {
+
+glm::dvec3 gridDirection(const FacePath& path, int cells, const GridVertex& at) {
   const int gridLevel = path.level() + std::countr_zero(static_cast<unsigned>(cells));
-  const auto vertices = static_cast<std::size_t>(row * row);
-  const int exponent = stepExponent(options.radiusMeters, path.level());
+  if (path.scheme() == Scheme::Ico)
+    return icoGridDirection(kIcoMap, path.face(), gridLevel, gridVertexWeights(triangleTile(path), cells, at));
+  const auto along = [cells](std::uint32_t tile, int k) {
+    return std::uint64_t{tile} * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(k);
+  };
+  return cubeGridDirection(path.face(), gridLevel, along(path.column(), at.i), along(path.row(), at.j));
+}
+
+}  // namespace
+
+Tile smallTile(const FacePath& path, const HeightFormula& height, const SmallTileOptions& options) {
+  const TileGrid grid{path.scheme(), options.cells};
+  const auto vertices = static_cast<std::size_t>(grid.vertexCount());
+  const int exponent = stepExponent(options.radiusMeters, path.level(), path.scheme());
 
   std::vector<LatticePoint> points;
   LatticePoint lowest(std::numeric_limits<std::int64_t>::max());
-  for (int j = 0; j < row; ++j) {
-    for (int i = 0; i < row; ++i) {
-      const auto column =
-          static_cast<std::uint64_t>(path.column()) * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(i);
-      const auto line =
-          static_cast<std::uint64_t>(path.row()) * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(j);
-      const glm::dvec3 direction = cubeGridDirection(path.face(), gridLevel, column, line);
+  for (int j = 0; j <= grid.cells; ++j) {
+    for (int i = 0; i <= grid.rowEnd(j); ++i) {
+      const glm::dvec3 direction = gridDirection(path, grid.cells, {i, j});
       points.push_back(roundToLattice((options.radiusMeters + height(direction)) * direction, exponent));
       lowest = glm::min(lowest, points.back());
     }
@@ -44,24 +55,28 @@ Tile smallTile(const FacePath& path, const HeightFormula& height, const SmallTil
   tile.mesh.offsets.resize(3 * vertices);
   tile.mesh.normals.resize(3 * vertices);
   tile.mesh.gridIndices.resize(vertices);
-  for (std::size_t grid = 0; grid < vertices; ++grid) {
-    const glm::dvec3 up = glm::normalize(latticePosition(points[grid], exponent));
+  for (std::size_t at = 0; at < vertices; ++at) {
+    const glm::dvec3 up = glm::normalize(latticePosition(points[at], exponent));
     for (int k = 0; k < 3; ++k) {
-      const auto at = 3 * place[grid] + static_cast<std::size_t>(k);
-      tile.mesh.offsets[at] = static_cast<std::uint16_t>(points[grid][k] - lowest[k]);
-      tile.mesh.normals[at] = static_cast<float>(up[k]);
+      const auto component = 3 * place[at] + static_cast<std::size_t>(k);
+      tile.mesh.offsets[component] = static_cast<std::uint16_t>(points[at][k] - lowest[k]);
+      tile.mesh.normals[component] = static_cast<float>(up[k]);
     }
-    tile.mesh.gridIndices[place[grid]] = static_cast<std::uint16_t>(grid);
+    tile.mesh.gridIndices[place[at]] = static_cast<std::uint16_t>(at);
   }
-  for (int j = 0; j < cells; ++j) {
-    for (int i = 0; i < cells; ++i) {
-      const auto vertex = [&](int di, int dj) {
-        return static_cast<std::uint32_t>(place[static_cast<std::size_t>((j + dj) * row + i + di)]);
-      };
-      const std::uint32_t a = vertex(0, 0), b = vertex(1, 0), c = vertex(0, 1), d = vertex(1, 1);
-      const bool falling = options.alternateDiagonals && (i + j) % 2;
-      for (const std::uint32_t index : falling ? std::array{a, b, c, b, d, c} : std::array{a, b, d, a, d, c}) {
-        tile.mesh.triangles.push_back(index);
+  const auto vertex = [&](const GridVertex& at) {
+    return static_cast<std::uint32_t>(place[static_cast<std::size_t>(grid.index(at))]);
+  };
+  const auto add = [&](const GridVertex& a, const GridVertex& b, const GridVertex& c) {
+    for (const GridVertex& corner : {a, b, c}) tile.mesh.triangles.push_back(vertex(corner));
+  };
+  for (int j = 0; j < grid.cells; ++j) {
+    for (int i = 0; i < grid.rowEnd(j); ++i) {
+      if (grid.isSquare() && options.alternateDiagonals && (i + j) % 2 != 0) {
+        add({i, j}, {i + 1, j}, {i, j + 1});
+        add({i + 1, j}, {i + 1, j + 1}, {i, j + 1});
+      } else {
+        grid.eachTriangle(i, j, add);
       }
     }
   }
@@ -71,12 +86,12 @@ Tile smallTile(const FacePath& path, const HeightFormula& height, const SmallTil
   metadata.stepExponent = exponent;
   metadata.origin = lowest;
   metadata.heights = metadata.subtreeHeights = {-100, 100};
-  metadata.geometricErrorMeters = nominalTileWidthMeters(options.radiusMeters, path.level()) / 100;
-  const double occluder = lowestSurfaceRadiusMeters(options.radiusMeters, -100, cells);
+  metadata.geometricErrorMeters = nominalTileWidthMeters(options.radiusMeters, path.level(), path.scheme()) / 100;
+  const double occluder = lowestSurfaceRadiusMeters(options.radiusMeters, -100, grid.cells, path.scheme());
   const TileBounds bounds = tileBounds(path, options.radiusMeters, metadata.heights, occluder);
   metadata.sphere = bounds.sphere;
   metadata.horizonPoint = bounds.horizonPoint;
-  metadata.cellsPerEdge = cells;
+  metadata.cellsPerEdge = grid.cells;
   return tile;
 }
 

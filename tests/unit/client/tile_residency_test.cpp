@@ -60,14 +60,14 @@ TEST(TileResidency, RemembersTheHeightsOfAnEvictedTileThoughItCannotBeDrawn) {
 TEST(TileResidency, WhatIsOnlyRememberedIsNotResident) {
   SmallResidency small;
   small.add("cube/2");
-  EXPECT_TRUE(small.residency.groundBelow({0, 1, 0}, kMoonRadius));
+  EXPECT_TRUE(small.residency.groundBelow({0, 1, 0}, kMoonRadius, Scheme::Cube));
   small.evictAll();
   EXPECT_EQ(small.residency.size(), 0u);
   EXPECT_EQ(small.residency.bytes(), 0u);
   EXPECT_EQ(small.residency.rememberedSize(), 1u);
   EXPECT_EQ(small.residency.touch(path("cube/2"), {}), nullptr);
   EXPECT_EQ(small.residency.mesh(path("cube/2")), nullptr);
-  EXPECT_FALSE(small.residency.groundBelow({0, 1, 0}, kMoonRadius));
+  EXPECT_FALSE(small.residency.groundBelow({0, 1, 0}, kMoonRadius, Scheme::Cube));
   EXPECT_THAT(small.evictAll(), IsEmpty());
 }
 
@@ -163,7 +163,8 @@ TEST(TileResidency, TheDrawnHeightIsThatOfTheDrawnTileAsItIsDrawnWhateverFinerIs
         small.residency.drawnHeightBelow(3.0 * below, kMoonRadius, {{path("cube/3"), {}}, {path(tile), all}});
     return height.value_or(-1e9);
   };
-  EXPECT_NEAR(small.residency.groundBelow(below, kMoonRadius)->heightMeters, 500, 1) << "the finest ground";
+  EXPECT_NEAR(small.residency.groundBelow(below, kMoonRadius, Scheme::Cube)->heightMeters, 500, 1)
+      << "the finest ground";
   EXPECT_NEAR(drawn("cube/2/0000000000", 0), 100, 1);
   EXPECT_NEAR(drawn("cube/2/0000000000", 1), 100, 1) << "without a parent it is drawn as it is";
   EXPECT_NEAR(drawn("cube/2/00000000003", 0), 160, 1);

@@ -106,7 +106,8 @@ Vertex squareVertex(const DrawnTile& tile, int i, int j) {
   along(i == kGrid, Side::UMax, j);
   along(j == 0, Side::VMin, i);
   along(j == kGrid, Side::VMax, i);
-  const float morph = morphAt(morphByPlace(tile.morph), kGrid + 1, i, j);
+  const TileGrid grid{path.scheme(), kGrid};
+  const float morph = morphByBorders(grid, tile.morph)[grid.borders({i, j})];
   return {placeOf(direction), static_cast<double>(morph), drawn};
 }
 
