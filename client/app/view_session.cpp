@@ -64,7 +64,7 @@ struct ViewSession::State {
   ViewPose resolved(const View& view) const;
   double altitudeAboveDrawn(const ViewPose& viewed) const;
   std::vector<WantedTile> groundChain(double allowedPixels) const;
-  bool requestTiles(double allowedPixels, bool groundFirst, bool ahead);
+  bool requestTiles(double allowedPixels, const std::vector<WantedTile>& lower, bool groundFirst, bool ahead);
   void addBesidePicture(double allowedPixels, std::unordered_set<FacePath>& known,
                         std::vector<WantedTile>& wanted) const;
   void changeLevelsOverTime(bool wanted);
@@ -207,7 +207,10 @@ std::vector<WantedTile> ViewSession::State::groundChain(double allowedPixels) co
 
 // Asks for the selection and the ground; true when the ground's finest wanted tile is there. groundFirst: the camera's
 // own height depends on the ground, so until that is known no fine tile is asked for where the camera only seems to be.
-bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst, bool ahead) {
+// lower: what is wanted from the heights that the camera was held above. Asked for too, or what keeps the camera up
+// would never come.
+bool ViewSession::State::requestTiles(double allowedPixels, const std::vector<WantedTile>& lower, bool groundFirst,
+                                      bool ahead) {
   std::vector<WantedTile> wanted = selection.wanted;
   const std::vector<WantedTile> chain = groundChain(allowedPixels);
   const bool groundKnown = stream->resident(chain.back().path) != nullptr;
@@ -219,15 +222,16 @@ bool ViewSession::State::requestTiles(double allowedPixels, bool groundFirst, bo
   std::unordered_set<FacePath> known;
   known.reserve(wanted.size() * 2);
   for (const WantedTile& tile : wanted) known.insert(tile.path);
-  for (const WantedTile& tile : chain)
-    if (known.insert(tile.path).second) wanted.push_back(tile);
+  for (const auto* more : {&lower, &chain})
+    for (const WantedTile& tile : *more)
+      if (known.insert(tile.path).second) wanted.push_back(tile);
   std::stable_sort(wanted.begin(), wanted.end(),
                    [](const WantedTile& a, const WantedTile& b) { return a.path.level() < b.path.level(); });
   wantedCount = wanted.size();
   missing = static_cast<std::size_t>(std::count_if(
       wanted.begin(), wanted.end(), [&](const WantedTile& tile) { return stream->resident(tile.path) == nullptr; }));
   if (ahead && (groundKnown || !groundFirst)) addBesidePicture(allowedPixels, known, wanted);
-  stream->want(wanted);
+  stream->want(wanted, ViewOfTiles{camera, allowedPixels});
   return groundKnown;
 }
 
@@ -278,6 +282,7 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   };
   Camera camera = cameraOf(pose);
   bool levelsChanged = false;
+  std::vector<WantedTile> lower;
   double altitudeDue = pose.altitudeMeters;  // above what is drawn now, not a frame ago
   if (!frozen) {
     s.changeLevelsOverTime(drawSettings.transition != Transition::None);
@@ -285,6 +290,7 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
     for (int rises = 0; rises < kMostRises; ++rises) {
       altitudeDue = s.altitudeAboveDrawn(viewed);
       if (altitudeDue <= pose.altitudeMeters) break;
+      lower.insert(lower.end(), s.selection.wanted.begin(), s.selection.wanted.end());
       pose.altitudeMeters = altitudeDue;
       camera = cameraOf(pose);
       levelsChanged = s.chooseTiles(camera, errorPixels, 0) || levelsChanged;
@@ -299,7 +305,7 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   UpdateReport report;
   report.changed = moved || levelsChanged;
   if (!frozen) {
-    const bool groundKnown = s.requestTiles(errorPixels, view.aboveGround, view.ahead);
+    const bool groundKnown = s.requestTiles(errorPixels, lower, view.aboveGround, view.ahead);
     report.complete = s.selection.complete && (groundKnown || !view.aboveGround);
     const bool still =
         pose.altitudeMeters == altitudeDue && (!view.aboveGround || pose.altitudeMeters == altitudeBefore);

@@ -66,7 +66,7 @@ void TileResidency::remove(const FacePath& path) {
 }
 
 std::vector<FacePath> TileResidency::evict(std::size_t budgetBytes, const std::vector<FacePath>& draw,
-                                           const std::function<bool(const LastWanted&)>& protects) {
+                                           const std::function<bool(const FacePath&, const LastWanted&)>& protects) {
   std::vector<FacePath> gone;
   if (bytes_ <= budgetBytes) return gone;
   ++drawMark_;
@@ -76,7 +76,7 @@ std::vector<FacePath> TileResidency::evict(std::size_t budgetBytes, const std::v
   using Candidate = std::tuple<std::uint64_t, int, FacePath>;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates;
   const auto consider = [&](const FacePath& path, const Resident& resident) {
-    if (resident.drawnMark == drawMark_ || descendants_.contains(path) || protects(resident.wanted)) return;
+    if (resident.drawnMark == drawMark_ || descendants_.contains(path) || protects(path, resident.wanted)) return;
     candidates.emplace(resident.wanted.call, -path.level(), path);
   };
   for (const auto& [path, resident] : tiles_) consider(path, resident);

@@ -52,7 +52,7 @@ class TileResidency {
   /// Removes the least recently wanted, finest first among equals, until the budget holds or nothing may go any more:
   /// what is in draw, what protects() says, and the ancestors of what stays.
   std::vector<FacePath> evict(std::size_t budgetBytes, const std::vector<FacePath>& draw,
-                              const std::function<bool(const LastWanted&)>& protects);
+                              const std::function<bool(const FacePath&, const LastWanted&)>& protects);
   /// Forgets the remembered ones too.
   void clear();
 

@@ -60,7 +60,8 @@ struct TileStream::State {
   bool sceneStale = false;    ///< the server has said that our revision is gone
   bool sceneDoubted = false;  ///< a tile was not found: the server's scene, which may be another, is asked for
   bool bodyMissing = false;
-  bool wantDue = false;  ///< a new revision is in force, and nobody has said yet what is wanted of it
+  std::optional<ViewOfTiles> from;  ///< where the last call of want() looked from
+  bool wantDue = false;             ///< a new revision is in force, and nobody has said yet what is wanted of it
   int sameRevisionAgain = 0, doubts = 0;
   const BodyInfo* body = nullptr;
 
@@ -202,10 +203,15 @@ struct TileStream::State {
     return wanted.call == call || (call - wanted.call < kGraceCalls && now - wanted.time < options.graceTime);
   }
 
+  bool isHeld(const FacePath& path) const {
+    return from && staysSubdivided(path, *from, body->selection,
+                                   [this](const FacePath& other) { return residency.find(other); });
+  }
+
   void dropUnwanted(Clock::time_point now) {
     for (auto at = orders.begin(); at != orders.end();) {
       Request& request = requests.at(at->second);
-      if (stillWanted(request.wanted, now)) {
+      if (stillWanted(request.wanted, now) || isHeld(at->second)) {
         if (request.wanted.call != call && request.priority < kUnwanted) {
           request.priority += kUnwanted;
           pipeline->setPriority(at->first, request.priority);
@@ -244,8 +250,16 @@ struct TileStream::State {
 
   std::vector<FacePath> evict(const std::vector<FacePath>& draw) {
     const auto now = Clock::now();
-    auto gone = residency.evict(options.residentBudgetBytes, draw,
-                                [&](const LastWanted& wanted) { return stillWanted(wanted, now); });
+    const auto recent = [&](const LastWanted& wanted) { return stillWanted(wanted, now); };
+    const auto budget = static_cast<double>(options.residentBudgetBytes);
+    auto gone = residency.evict(options.residentBudgetBytes, draw, [&](const FacePath& path, const LastWanted& wanted) {
+      return recent(wanted) || isHeld(path);
+    });
+    if (static_cast<double>(residency.bytes()) > (1 + kHeldOverBudget) * budget) {
+      const auto more = residency.evict(static_cast<std::size_t>((1 + kHeldOverBudget) * budget), draw,
+                                        [&](const FacePath&, const LastWanted& wanted) { return recent(wanted); });
+      gone.insert(gone.end(), more.begin(), more.end());
+    }
     evicted += gone.size();
     return gone;
   }
@@ -327,9 +341,10 @@ void TileStream::selectBody(std::size_t index) { state_->selectBody(state_->scen
 
 const BodyInfo* TileStream::body() const noexcept { return state_->body; }
 
-void TileStream::want(const std::vector<WantedTile>& wanted) {
+void TileStream::want(const std::vector<WantedTile>& wanted, const std::optional<ViewOfTiles>& from) {
   state_->drain();
   if (!state_->body) return;
+  state_->from = from;
   ++state_->call;
   state_->wantDue = false;
   const LastWanted now{state_->call, Clock::now()};

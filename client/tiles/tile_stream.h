@@ -9,8 +9,9 @@
 // Of an evicted tile the heights are remembered, so that it is not fetched again only to learn that it is out of view.
 //
 // Hysteresis lives here, so that a camera that hovers at a threshold costs nothing: what is no longer wanted goes on
-// loading, behind all that is wanted, for kGraceCalls calls of want() or graceTime, whichever ends first; what was
-// wanted that recently is not evicted.
+// loading, behind all that is wanted, and is not evicted, while its parent's error is above half of what is allowed
+// (common/view/level_hysteresis.h); and for kGraceCalls calls of want() or graceTime, whichever ends first, for a
+// camera that turns to and fro.
 //
 // When the server says that the revision is gone, or does not find a tile and has another revision, scene() becomes
 // another scene and every tile is asked for again as it is wanted; the old ones stay resident and drawn until their
@@ -29,6 +30,7 @@
 #include "client/net/simulated_link.h"
 #include "common/result.h"
 #include "common/view/drawn_tile.h"
+#include "common/view/level_hysteresis.h"
 #include "common/view/tile_selection.h"
 #include "proto/scene_json.h"
 #include "proto/tile_mesh.h"
@@ -53,6 +55,9 @@ struct StreamOptions {
 
 /// Calls of want() for which a tile that is no longer wanted is treated as if it were (or StreamOptions::graceTime).
 inline constexpr std::uint64_t kGraceCalls = 30;
+
+/// As a share of the budget.
+inline constexpr double kHeldOverBudget = 0.5;
 
 enum class LinkState : std::uint8_t { Connecting, Online, Slow, Offline };
 
@@ -87,7 +92,8 @@ class TileStream {
   const BodyInfo* body() const noexcept;
 
   /// Once a frame: what is wanted now, coarsest first. Queued and running requests for anything else are cancelled.
-  void want(const std::vector<WantedTile>& wanted);
+  /// from: where it is wanted from; without it there is no holding by error, only the grace.
+  void want(const std::vector<WantedTile>& wanted, const std::optional<ViewOfTiles>& from = std::nullopt);
   /// Decoded tiles to upload now, at most about maxBytes of them (at least one if any is ready), coarsest first.
   std::vector<TilePtr> takeDecoded(std::size_t maxBytes);
   /// The tile is on the GPU and may be drawn; if it was resident before, it takes that one's place. gpuBytes count
@@ -95,7 +101,8 @@ class TileStream {
   /// the caller's to keep or drop.
   void markResident(const TilePtr& tile, std::size_t gpuBytes);
   /// Drops what is over budget, least recently wanted first; never what is in draw, what was wanted just now or within
-  /// the grace, nor an ancestor of what stays. So a view that needs more than the budget gets it. The caller frees the
+  /// the grace, nor an ancestor of what stays. So a view that needs more than the budget gets it. What stays by its
+  /// parent's error alone may take kHeldOverBudget more than the budget. The caller frees the
   /// GL objects.
   std::vector<FacePath> evict(const std::vector<FacePath>& draw);
 

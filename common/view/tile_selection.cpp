@@ -347,4 +347,11 @@ bool tileMayBeSeen(const FacePath& path, const Camera& camera, const SelectionBo
               .hides(bounds.horizonPoint);
 }
 
+double tileErrorPixels(const FacePath& path, const Camera& camera, const SelectionBody& body,
+                       const ResidentLookup& resident) {
+  const TileBounds bounds =
+      tileBounds(path, body.radiusMeters, knownHeights(path, body, resident), body.occluderRadiusMeters);
+  return screenSpaceErrorPixels(errorMetersOf(body, path.level()), bounds.box, camera);
+}
+
 }  // namespace terrane

@@ -74,6 +74,10 @@ struct TileSelection {
 bool tileMayBeSeen(const FacePath& path, const Camera& camera, const SelectionBody& body,
                    const ResidentLookup& resident);
 
+/// A tile's screen-space error by what is known of its heights, as selection judges it once the tile is known.
+double tileErrorPixels(const FacePath& path, const Camera& camera, const SelectionBody& body,
+                       const ResidentLookup& resident);
+
 /// From a camera that is nowhere (a position or field of view that is not finite): nothing, and not complete.
 TileSelection selectTiles(const Camera& camera, const SelectionBody& body, const ResidentLookup& resident,
                           const SelectionSettings& settings);

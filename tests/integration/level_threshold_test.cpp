@@ -1,5 +1,5 @@
 // A camera that hovers where a level begins costs nothing: over 1,000 steps to and fro no tile is asked for, built or
-// evicted twice, as long as the budget holds what both sides want. The controls take slack, grace, or both, away.
+// evicted twice, on tiles of both schemes. The controls take hysteresis, slack and grace away.
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 
 #include "client/tiles/tile_stream.h"
 #include "server/http/http_server.h"
+#include "tests/support/both_schemes.h"
 #include "tests/support/moon_body.h"
 
 namespace terrane {
@@ -20,11 +21,13 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kGpuBytes = 100'000;
 constexpr int kSteps = 1000;
+constexpr double kErrorPixels = 2;
+constexpr std::size_t kServerCache = 64u << 20;
 
 /// Builds the Moon's tiles, in this process, over real sockets.
 class MoonServer {
  public:
-  explicit MoonServer(std::size_t memoryCacheBytes) : service_(scene(), options(memoryCacheBytes)) {
+  MoonServer(Scheme scheme, std::size_t memoryCacheBytes) : service_(scene(scheme), options(memoryCacheBytes)) {
     ServerOptions listening;
     listening.listen = {"127.0.0.1:0"};
     auto opened = HttpServer::open(listening, service_);
@@ -40,7 +43,7 @@ class MoonServer {
   TileCacheStats cache() const { return service_.cacheStats(); }
 
  private:
-  static Scene scene() { return {"moon", "", {testMoon()}, {}}; }
+  static Scene scene(Scheme scheme) { return {"moon", "", {tiledBy(scheme, testMoon())}, {}}; }
   static TileService::Options options(std::size_t memoryCacheBytes) {
     TileService::Options chosen;
     chosen.threads = 1;
@@ -59,7 +62,8 @@ Camera cameraAt(double altitudeMeters) {
 /// A viewer without a picture.
 class Viewer {
  public:
-  Viewer(const std::string& url, std::size_t budgetBytes, std::chrono::milliseconds grace) {
+  Viewer(const std::string& url, std::size_t budgetBytes, std::chrono::milliseconds grace, bool hysteresis)
+      : hysteresis_(hysteresis) {
     StreamOptions options;
     options.serverUrl = url;
     options.residentBudgetBytes = budgetBytes;
@@ -72,9 +76,11 @@ class Viewer {
   }
 
   const TileSelection& frame(double altitudeMeters) {
-    selection_ = selectTiles(cameraAt(altitudeMeters), stream_->body()->selection,
-                             [this](const FacePath& path) { return stream_->known(path); }, {});
-    stream_->want(selection_.wanted);
+    selection_ =
+        selectTiles(cameraAt(altitudeMeters), stream_->body()->selection,
+                    [this](const FacePath& path) { return stream_->known(path); }, {.errorPixels = kErrorPixels});
+    stream_->want(selection_.wanted,
+                  hysteresis_ ? std::optional(ViewOfTiles{cameraAt(altitudeMeters), kErrorPixels}) : std::nullopt);
     for (const TilePtr& tile : stream_->takeDecoded(64 << 20)) stream_->markResident(tile, kGpuBytes);
     for (const FacePath& path : stream_->evict(selection_.draw)) evictedTwice += evicted_.insert(path).second ? 0 : 1;
     return selection_;
@@ -101,6 +107,7 @@ class Viewer {
     return false;
   }
 
+  bool hysteresis_;
   std::unique_ptr<TileStream> stream_;
   TileSelection selection_;
   std::set<FacePath> evicted_;
@@ -113,7 +120,7 @@ struct Threshold {
 };
 
 Threshold findThreshold(const std::string& url) {
-  Viewer viewer(url, std::size_t{1} << 40, 1h);
+  Viewer viewer(url, std::size_t{1} << 40, 1h, false);
   Threshold found;
   viewer.settle(found.above);
   const int coarse = viewer.finestLevel();
@@ -136,11 +143,17 @@ struct Hovering {
   int evictedTwice = 0;
 };
 
+struct Slack {
+  std::size_t budgetBytes = 0;
+  std::chrono::milliseconds grace{0};
+  bool hysteresis = false;
+};
+
 /// Settles on both sides first. patient: waits on each side until all is there.
-Hovering hover(const Threshold& threshold, std::size_t budgetBytes, std::chrono::milliseconds grace, int steps,
-               bool patient, std::size_t serverCacheBytes = 64u << 20) {
-  const MoonServer server(serverCacheBytes);
-  Viewer viewer(server.url(), budgetBytes, grace);
+Hovering hover(Scheme scheme, const Threshold& threshold, const Slack& slack, int steps, bool patient,
+               std::size_t serverCacheBytes = kServerCache) {
+  const MoonServer server(scheme, serverCacheBytes);
+  Viewer viewer(server.url(), slack.budgetBytes, slack.grace, slack.hysteresis);
   for (const double altitude : {threshold.below, threshold.above, threshold.below}) viewer.settle(altitude);
   const StreamStatus before = viewer.status();
   const TileCacheStats cacheBefore = server.cache();
@@ -168,46 +181,57 @@ void print(const char* what, int steps, const Hovering& hovering) {
       static_cast<unsigned long long>(hovering.builds), static_cast<unsigned long long>(hovering.hits));
 }
 
-TEST(LevelThreshold, AThousandStepsToAndFroRequestBuildAndEvictNothingTwice) {
+class LevelThreshold : public testing::TestWithParam<Scheme> {};
+
+TEST_P(LevelThreshold, AThousandStepsToAndFroRequestBuildAndEvictNothingTwice) {
   const Threshold threshold = [] {
-    const MoonServer server(64u << 20);
+    const MoonServer server(GetParam(), kServerCache);
     return findThreshold(server.url());
   }();
   std::printf("a level begins between %.1f and %.1f m; both sides want %zu tiles, %zu bytes\n", threshold.below,
               threshold.above, threshold.tiles, threshold.bytes);
+  const auto hovering = [&](const Slack& slack, int steps, bool patient) {
+    return hover(GetParam(), threshold, slack, steps, patient);
+  };
 
-  const Hovering tight = hover(threshold, threshold.bytes, 0ms, kSteps, true);
-  print("budget of both sides, no grace", kSteps, tight);
+  // Too little for both sides, and no grace: what is between half of the allowed error and all of it stays.
+  const std::size_t tooLittle = threshold.bytes - threshold.bytes / threshold.tiles;
+  const Hovering held = hovering({.budgetBytes = tooLittle, .hysteresis = true}, kSteps, true);
+  print("a tile too little, hysteresis", kSteps, held);
+  EXPECT_EQ(held.requests, 0u);
+  EXPECT_EQ(held.builds + held.hits, 0u);
+  EXPECT_EQ(held.evictedTwice, 0);
+
+  const Hovering tight = hovering({.budgetBytes = threshold.bytes}, kSteps, true);
+  print("budget of both sides, neither", kSteps, tight);
   EXPECT_EQ(tight.requests, 0u);
   EXPECT_EQ(tight.evicted, 0u);
   EXPECT_EQ(tight.builds + tight.hits, 0u);
 
-  // Too little for both: within the grace it costs nothing all the same, without it every step does.
-  const std::size_t tooLittle = threshold.bytes - threshold.bytes / threshold.tiles;
-  const Hovering graceful = hover(threshold, tooLittle, 1h, kSteps, false);
-  print("a tile too little, with grace", kSteps, graceful);
+  const Hovering graceful = hovering({.budgetBytes = tooLittle, .grace = 1h}, kSteps, false);
+  print("a tile too little, grace", kSteps, graceful);
   EXPECT_EQ(graceful.requests, 0u);
   EXPECT_EQ(graceful.evictedTwice, 0) << "what neither side wants may go, once";
 
-  constexpr int kControlSteps = 40;
-  const Hovering control = hover(threshold, tooLittle, 0ms, kControlSteps, true);
-  print("control, a tile too little, no grace", kControlSteps, control);
-  EXPECT_GE(control.requests, kControlSteps / 2u);
-  EXPECT_GE(control.evicted, kControlSteps / 2u);
+  const Hovering control = hovering({.budgetBytes = tooLittle}, kSteps, true);
+  print("control, a tile too little, neither", kSteps, control);
+  EXPECT_GE(control.requests, kSteps / 2u);
+  EXPECT_GE(control.evicted, kSteps / 2u);
   EXPECT_GT(control.evictedTwice, 0);
   EXPECT_EQ(control.builds, 0u) << "the server has them";
   EXPECT_EQ(control.hits, control.requests);
 
-  const Hovering forgetful = hover(threshold, tooLittle, 0ms, kControlSteps, true, 0);
-  print("control, and a server without a cache", kControlSteps, forgetful);
-  EXPECT_GE(forgetful.builds, kControlSteps / 2u);
+  constexpr int kForgetfulSteps = 40;
+  const Hovering forgetful = hover(GetParam(), threshold, {.budgetBytes = tooLittle}, kForgetfulSteps, true, 0);
+  print("control, and a server without a cache", kForgetfulSteps, forgetful);
+  EXPECT_GE(forgetful.builds, kForgetfulSteps / 2u);
 }
 
-TEST(LevelThreshold, FromTheFirstRequestOnEveryTileIsAskedForAndBuiltOnce) {
-  const MoonServer server(64u << 20);
+TEST_P(LevelThreshold, FromTheFirstRequestOnEveryTileIsAskedForAndBuiltOnce) {
+  const MoonServer server(GetParam(), kServerCache);
   const Threshold threshold = findThreshold(server.url());
-  const MoonServer fresh(64u << 20);
-  Viewer viewer(fresh.url(), 2 * threshold.bytes, 500ms);
+  const MoonServer fresh(GetParam(), kServerCache);
+  Viewer viewer(fresh.url(), 2 * threshold.bytes, 500ms, true);
   for (int step = 0; step < kSteps; ++step) viewer.frame(step % 2 == 0 ? threshold.above : threshold.below);
   viewer.settle(threshold.below);
   const TileCacheStats cache = fresh.cache();
@@ -219,6 +243,8 @@ TEST(LevelThreshold, FromTheFirstRequestOnEveryTileIsAskedForAndBuiltOnce) {
   EXPECT_EQ(cache.hits, 0u) << "a tile that was asked for twice";
   EXPECT_EQ(cache.builds, cache.entries) << "a tile that was built twice";
 }
+
+INSTANTIATE_TEST_SUITE_P(Schemes, LevelThreshold, test::bothSchemes(), test::nameOfScheme);
 
 }  // namespace
 }  // namespace terrane

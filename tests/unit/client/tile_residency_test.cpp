@@ -30,7 +30,7 @@ class SmallResidency {
     residency.add(std::make_shared<const Tile>(std::move(made)), info, revision, kGpuBytes, LastWanted{++call_, {}});
   }
   std::vector<FacePath> evictAll() {
-    return residency.evict(0, {}, [](const LastWanted&) { return false; });
+    return residency.evict(0, {}, [](const FacePath&, const LastWanted&) { return false; });
   }
   const ResidentTile* find(std::string_view tile) const { return residency.find(path(tile)); }
 
