@@ -17,10 +17,20 @@ constexpr std::array kLunarParameters{
     ParameterSpec{"finest-detail", Quantity::Length, 0.001, 1000.0, 0.001, "wavelength of the smallest features"},
 };
 
+constexpr std::array kMidpointParameters{
+    ParameterSpec{"amplitude", Quantity::Length, 0.0, 1e6, 1000.0,
+                  "the solid's corners lie that far up or down at most, the vertices new at grid level l by "
+                  "2^-l l^regularity of it beside their surroundings"},
+    ParameterSpec{"regularity", Quantity::Number, 0.0, 3.0, 1.0,
+                  "how much rougher fine detail is than coarse; 0 is fractal ground, alike at all scales"},
+};
+
 constexpr std::array<FieldRow, kFieldKindCount> kFields{{
     {FieldKind::Sphere, "sphere", "a bare sphere", {}},
     {FieldKind::Lunar, "lunar", "maria, highlands, craters, regolith and rocks, from basins to grains",
      kLunarParameters},
+    {FieldKind::Midpoint, "midpoint", "fractal ground: edges are halved and their middles moved, level by level",
+     kMidpointParameters},
 }};
 
 }  // namespace

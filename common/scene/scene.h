@@ -15,8 +15,8 @@ namespace terrane {
 
 /// The kinds of height field that a body may have. To add one: a kind, a row in field_table.cpp, a case in
 /// server/fields/make_field.
-enum class FieldKind : std::uint8_t { Sphere, Lunar };
-inline constexpr int kFieldKindCount = 2;
+enum class FieldKind : std::uint8_t { Sphere, Lunar, Midpoint };
+inline constexpr int kFieldKindCount = 3;
 
 struct FieldRow {
   FieldKind kind;

@@ -9,16 +9,12 @@
 namespace terrane {
 namespace {
 
-/// Heights of neighbouring vertices differ by at most this many times their distance (79 degrees; tile_builder_test
-/// holds the lunar field to it). It only enters the sag below, in second order.
-constexpr double kSteepestSlope = 5.0;
-
 /// Of a cell's edge, in its nominal width.
 double longestEdge(Scheme scheme) noexcept { return scheme == Scheme::Cube ? 1.0 : kIcoLongestEdge; }
 
 /// How far a straight edge may lie below the surface that interpolates its ends' heights over a sphere: c^2 / 8 r for
-/// level ends, and dr^2 / 4 r more where they differ by dr (in the middle direction a chord is at the harmonic mean of
-/// its ends' radii).
+/// level ends, and dr^2 / 4 r more where they differ by dr, kSteepestSlope times their distance at most (in the middle
+/// direction a chord is at the harmonic mean of its ends' radii).
 double sagMeters(double cell, double lowestRadius, double heightSpan) noexcept {
   const double rise = std::min(kSteepestSlope * cell, heightSpan);
   return (0.5 * cell * cell + rise * rise) / (4.0 * lowestRadius);

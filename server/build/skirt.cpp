@@ -60,9 +60,12 @@ class SkirtBuilder {
   void evaluate(std::size_t samplesPerEdge, int level) {
     const GridDirections& d = scratch_.directions;
     scratch_.heightMeters.clear();
-    for (std::size_t at = 0; at < edges_ * samplesPerEdge; at += samplesPerEdge) {
-      tile_.field.evaluate({d.x.data() + at, d.y.data() + at, d.z.data() + at, 1, samplesPerEdge},
-                           tile_.levels[static_cast<std::size_t>(level)].minWavelengthMeters, scratch_.samples);
+    for (std::size_t edge = 0; edge < edges_; ++edge) {
+      const std::size_t at = edge * samplesPerEdge;
+      const int cells = static_cast<int>(samplesPerEdge) - 1;
+      SampleBatch batch{d.x.data() + at, d.y.data() + at, d.z.data() + at, 1, samplesPerEdge};
+      batch.grid = GridPlace{tile_.path, cells, static_cast<int>(edge)};
+      tile_.field.evaluate(batch, tile_.levels[static_cast<std::size_t>(level)].minWavelengthMeters, scratch_.samples);
       scratch_.heightMeters.insert(scratch_.heightMeters.end(), scratch_.samples.heightMeters.begin(),
                                    scratch_.samples.heightMeters.end());
     }

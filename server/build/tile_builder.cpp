@@ -243,7 +243,8 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
                           memory.directions.z.data(),
                           memory.directions.x.size() / side,
                           side,
-                          0.5 * accuracy.minWavelengthMeters};
+                          0.5 * accuracy.minWavelengthMeters,
+                          GridPlace{path, wire.cellsPerEdge}};
   field->evaluate(batch, accuracy.minWavelengthMeters, memory.samples);
   memory.skirt.samples.scratch = memory.samples.scratch;  // what was gathered around the tile serves its borders too
   skirtHeights({*field, levels, *topology, radius, path, memory.directions, memory.samples.heightMeters}, memory.skirt,

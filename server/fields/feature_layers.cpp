@@ -254,13 +254,6 @@ double widened(double reach, double bodyRadius) noexcept { return reach * (1 + 1
 
 }  // namespace
 
-std::uint64_t mixHash(std::uint64_t h) noexcept {
-  h += 0x9E3779B97F4A7C15ull;
-  h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9ull;
-  h = (h ^ (h >> 27)) * 0x94D049BB133111EBull;
-  return h ^ (h >> 31);
-}
-
 double FeatureLayer::smallestDiameter() const noexcept { return powerOfTwo(exponent); }
 
 Morphometry freshCrater(double diameter) noexcept {

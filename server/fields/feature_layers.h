@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "server/fields/lunar_program.h"
+#include "server/fields/mix_hash.h"
 
 namespace terrane::lunar {
 
@@ -85,9 +86,5 @@ void gatherHalos(const FeatureLayer& layer, double bodyRadius, const double cent
 /// The feature of one cell, if it has one.
 bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::uint32_t column, std::uint32_t row,
                    Feature& out);
-
-std::uint64_t mixHash(std::uint64_t h) noexcept;
-/// In [0, 1).
-inline double hashUnit(std::uint64_t h) noexcept { return static_cast<double>(h >> 11) * 0x1p-53; }
 
 }  // namespace terrane::lunar

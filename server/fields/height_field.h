@@ -6,11 +6,14 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/result.h"
 #include "common/scene/scene.h"
+#include "common/tiling/face_path.h"
 #include "common/tiling/tile_bounds.h"
 
 namespace terrane {
@@ -23,6 +26,16 @@ bool simdPathSupported(SimdPath path) noexcept;
 /// "default", "v3", "v4"; errors name "--simd".
 Result<SimdPath> parseSimdPath(std::string_view text);
 
+/// Says which vertices samples are: all of a tile's grid, by grid index, or those along one edge, in the order of the
+/// skirts (build/grid_directions.h): of these heights alone are asked for, gradients and reflectance may hold anything.
+/// cellsPerEdge is a power of two, at most 256, and may be another than that of the tiles served.
+struct GridPlace {
+  static constexpr int kWholeGrid = -1;
+  FacePath path;
+  int cellsPerEdge = 0;
+  int skirtEdge = kWholeGrid;
+};
+
 /// Directions to sample, structure of arrays. Rows matter only for speed (a kernel may skip whole rows): count = rows *
 /// rowLength.
 struct SampleBatch {
@@ -33,6 +46,9 @@ struct SampleBatch {
   /// Gradients and reflectance are averaged over about this far around each sample, so that a mesh with such cells does
   /// not show them aliased (heights are those of the point itself); 0: at the point.
   double footprintMeters = 0;
+  /// Where the samples are a grid's vertices: fields that are made of the grid itself give each vertex its own height,
+  /// to the bit, and the gradient of the mesh around it. For others the directions say it all.
+  std::optional<GridPlace> grid = {};
   std::size_t count() const noexcept { return rows * rowLength; }
 };
 
@@ -46,6 +62,10 @@ struct SurfaceSamples {
   struct Scratch;                  ///< kernels' own memory
   std::shared_ptr<Scratch> scratch;
 };
+
+/// Heights of neighbouring vertices of a tile differ by at most this many times their distance (79 degrees); skirt_test
+/// holds the lunar field to it, midpoint_field_test the other.
+inline constexpr double kSteepestSlope = 5.0;
 
 class HeightField {
  public:
@@ -65,7 +85,12 @@ class HeightField {
   virtual std::string identity() const = 0;
 };
 
-/// Makes what the body names, and counts it ("field.lunar"). Never constructs another.
+/// Whether the body's field can be made: what no range of a single parameter says. The error's field is the key below
+/// the body ("midpoint.amplitude").
+Result<void> checkHeightField(const Body& body);
+
+/// Makes what the body names, and counts it ("field.lunar"). Never constructs another. Precondition: checkHeightField
+/// finds nothing.
 std::unique_ptr<const HeightField> makeHeightField(const Body& body, SimdPath simd);
 
 }  // namespace terrane

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/tiling/lattice.h"
+#include "server/fields/height_field.h"
 #include "server/scenes/quantity_text.h"
 #include "server/scenes/scene_text.h"
 #include "server/scenes/shipped_scenes.h"
@@ -258,6 +259,12 @@ class SceneReader {
                     fmt::format("these are settings of the field \"{}\", but this body's field is \"{}\"; allowed: {}",
                                 name, *text, body.fieldParameters.empty() ? "none" : fmt::format("[body.{}]", *text)));
       readParameters(*settings, join(path, name), fieldRow(*kind).parameters, body.fieldParameters);
+    }
+    if (error_) return;  // of the radius or the scheme, too
+    if (const Result<void> checked = checkHeightField(body); checked.has_error()) {
+      const toml::node_view<const toml::node> value = table.at_path(checked.error().field);
+      fail(value ? value.node()->source() : node->source(), join(path, checked.error().field), checked.error().message,
+           checked.error().kind);
     }
   }
 

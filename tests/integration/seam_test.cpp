@@ -1,5 +1,6 @@
 // Tiles of either scheme that share an edge decode to the same coordinates, normals and colours on it: over all edges
-// and corners of the cube and the icosahedron, and for random pairs of every level on bodies of every size.
+// and corners of the cube and the icosahedron, and for random pairs of every level on bodies of every size, whatever
+// their ground is.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@
 #include "common/tiling/lattice.h"
 #include "proto/gltf_tile.h"
 #include "server/build/tile_builder.h"
-#include "tests/support/both_schemes.h"
+#include "server/fields/midpoint_displacement.h"
 #include "tests/support/edge_vertices.h"
 #include "tests/support/ico_points.h"
 #include "tests/support/moon_body.h"
@@ -98,12 +99,31 @@ int solidCorner(Scheme scheme, const LatticePoint& point) {
   return nearest;
 }
 
-class Seam : public testing::TestWithParam<Scheme> {};
-INSTANTIATE_TEST_SUITE_P(Schemes, Seam, test::bothSchemes(), test::nameOfScheme);
+struct Ground {
+  Scheme scheme;
+  FieldKind field;
+};
+
+Body bodyOf(const Ground& ground, double radiusMeters) {
+  Body body = tiledBy(ground.scheme, testBody(ground.field, radiusMeters));
+  if (ground.field == FieldKind::Midpoint)
+    body.fieldParameters["amplitude"] = mostAmplitudeMeters(radiusMeters, ground.scheme, 1);
+  return body;
+}
+
+class Seam : public testing::TestWithParam<Ground> {};
+INSTANTIATE_TEST_SUITE_P(Grounds, Seam,
+                         testing::Values(Ground{Scheme::Cube, FieldKind::Lunar}, Ground{Scheme::Ico, FieldKind::Lunar},
+                                         Ground{Scheme::Cube, FieldKind::Midpoint},
+                                         Ground{Scheme::Ico, FieldKind::Midpoint}),
+                         [](const auto& ground) {
+                           return std::string(schemeName(ground.param.scheme)) + "_" +
+                                  std::string(fieldRow(ground.param.field).name);
+                         });
 
 TEST_P(Seam, AllEdgesOfFacesAgree) {
-  const Scheme scheme = GetParam();
-  const TileBuilder builder(tiledBy(scheme, testMoon()), {}, bestSimdPath());
+  const Scheme scheme = GetParam().scheme;
+  const TileBuilder builder(bodyOf(GetParam(), kMoonRadiusMeters), {}, bestSimdPath());
   for (const int level : {0, 3}) {
     for (int face = 0; face < faceCount(scheme); ++face) {
       for (int edge = 0; edge < edgeCount(scheme); ++edge) {
@@ -116,8 +136,8 @@ TEST_P(Seam, AllEdgesOfFacesAgree) {
 }
 
 TEST_P(Seam, AllFacesAgreeInEachCornerOfTheSolid) {
-  const Scheme scheme = GetParam();
-  const TileBuilder builder(tiledBy(scheme, testMoon()), {.cellsPerEdge = 16, .draco = {}}, bestSimdPath());
+  const Scheme scheme = GetParam().scheme;
+  const TileBuilder builder(bodyOf(GetParam(), kMoonRadiusMeters), {.cellsPerEdge = 16, .draco = {}}, bestSimdPath());
   for (const int level : {0, 5, builder.info().selection.maxLevel}) {
     std::map<int, std::vector<EdgeVertex>> corners;
     for (int face = 0; face < faceCount(scheme); ++face) {
@@ -135,7 +155,7 @@ TEST_P(Seam, AllFacesAgreeInEachCornerOfTheSolid) {
 }
 
 /// Every level 0 .. cap of a body, its radius log-uniform over all that the lattice serves, relief and all.
-void checkRandomPairs(Scheme scheme, int cellsPerEdge, int bodies, int pairs) {
+void checkRandomPairs(const Ground& ground, int cellsPerEdge, int bodies, int pairs) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> share(0, 1);
   std::printf("seed %u, %d pairs of %d cells on %d bodies\n", kSeed, pairs, cellsPerEdge, bodies);
@@ -144,12 +164,12 @@ void checkRandomPairs(Scheme scheme, int cellsPerEdge, int bodies, int pairs) {
                           : made == 1 ? kMaxRadiusMeters
                                       : kMinRadiusMeters * std::pow(kMaxRadiusMeters / kMinRadiusMeters, share(random));
     // Relief that was made for the Moon would turn a small body inside out, so those are bare.
-    const FieldKind field = radius > 1e6 && radius < 1e7 ? FieldKind::Lunar : FieldKind::Sphere;
-    const TileBuilder builder(tiledBy(scheme, testBody(field, radius)), {.cellsPerEdge = cellsPerEdge, .draco = {}},
-                              bestSimdPath());
+    const bool bare = ground.field == FieldKind::Lunar && (radius < 1e6 || radius > 1e7);
+    const Ground fitting{ground.scheme, bare ? FieldKind::Sphere : ground.field};
+    const TileBuilder builder(bodyOf(fitting, radius), {.cellsPerEdge = cellsPerEdge, .draco = {}}, bestSimdPath());
     for (int pair = 0; pair < pairs / bodies; ++pair) {
-      const FacePath path = randomTile(random, scheme, pair % (builder.info().selection.maxLevel + 1));
-      const int edge = static_cast<int>(random() % static_cast<unsigned>(edgeCount(scheme)));
+      const FacePath path = randomTile(random, ground.scheme, pair % (builder.info().selection.maxLevel + 1));
+      const int edge = static_cast<int>(random() % static_cast<unsigned>(edgeCount(ground.scheme)));
       SCOPED_TRACE(testing::Message() << "radius " << radius);
       ASSERT_NO_FATAL_FAILURE(
           expectSameEdge(decoded(builder, path), edge, decoded(builder, tileBeyondEdge(path, edge))));

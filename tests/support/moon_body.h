@@ -6,6 +6,7 @@
 
 #include "common/scene/scene.h"
 #include "common/tiling/cube_sphere.h"
+#include "common/tiling/lattice.h"
 #include "common/tiling/tile_bounds.h"
 #include "common/view/tile_selection.h"
 

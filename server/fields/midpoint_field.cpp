@@ -1,0 +1,87 @@
+#include "server/fields/midpoint_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/numerics/strict_math.h"
+#include "common/tiling/lattice.h"
+#include "server/fields/midpoint_samples.h"
+
+namespace terrane {
+namespace {
+
+double parameter(const Body& body, std::string_view name) { return body.fieldParameters.find(name)->second; }
+
+Scheme schemeOf(const Body& body) noexcept { return body.schemes.empty() ? Scheme::Cube : body.schemes.front(); }
+
+}  // namespace
+
+Result<void> MidpointField::check(const Body& body) {
+  const double amplitude = parameter(body, "amplitude"), regularity = parameter(body, "regularity");
+  const double most = mostAmplitudeMeters(body.radiusMeters, schemeOf(body), regularity);
+  if (amplitude <= most) return {};
+  return makeError(ErrorKind::TooLarge, "midpoint.amplitude",
+                   fmt::format("{:.6g} m is too steep for a radius of {:.6g} m at regularity {:.6g}; allowed: at most "
+                               "{:.6g} m",
+                               amplitude, body.radiusMeters, regularity, most));
+}
+
+MidpointField::MidpointField(const Body& body)
+    : radius_(body.radiusMeters),
+      amplitude_(parameter(body, "amplitude")),
+      regularity_(parameter(body, "regularity")),
+      seed_(body.seed),
+      scheme_(schemeOf(body)),
+      displacement_(amplitude_, regularity_, seed_) {}
+
+int MidpointField::gridLevelOf(double minWavelengthMeters) const noexcept {
+  // Wavelengths are two cells and so the level's to a few ulps; half way between two levels nothing can go wrong.
+  int level = 0;
+  double wavelength = 2.0 * nominalTileWidthMeters(radius_, 0, scheme_);
+  while (level < MidpointDisplacement::kFinestGridLevel && 0.5 * wavelength * 1.000001 >= minWavelengthMeters) {
+    wavelength *= 0.5;
+    ++level;
+  }
+  return level;
+}
+
+void MidpointField::evaluate(const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out) const {
+  const std::size_t count = batch.count();
+  out.heightMeters.resize(count);
+  out.gradientX.resize(count);
+  out.gradientY.resize(count);
+  out.gradientZ.resize(count);
+  out.reflectance.clear();
+  const midpoint::Surface surface{displacement_, gridLevelOf(minWavelengthMeters), radius_};
+  if (batch.grid) {
+    const bool whole = batch.grid->skirtEdge == GridPlace::kWholeGrid;
+    return whole ? sampleGrid(surface, *batch.grid, out) : sampleEdge(surface, *batch.grid, out.heightMeters);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto sample = samplePoint(surface, scheme_, {batch.x[i], batch.y[i], batch.z[i]});
+    out.heightMeters[i] = sample.heightMeters;
+    out.gradientX[i] = static_cast<float>(sample.gradient.x);
+    out.gradientY[i] = static_cast<float>(sample.gradient.y);
+    out.gradientZ[i] = static_cast<float>(sample.gradient.z);
+  }
+}
+
+double MidpointField::omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept {
+  return displacement_.largestSumMeters(gridLevelOf(minWavelengthMeters), gridLevelOf(finestWavelengthMeters));
+}
+
+double MidpointField::interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept {
+  return omittedAmplitudeMeters(2.0 * spacingMeters, minWavelengthMeters);
+}
+
+HeightRange MidpointField::heightRange() const noexcept {
+  const double highest = displacement_.largestHeightMeters();
+  return {-highest, highest};
+}
+
+std::string MidpointField::identity() const {
+  return fmt::format("midpoint 1 seed={} amplitude={:a} regularity={:a}", seed_, amplitude_, regularity_);
+}
+
+}  // namespace terrane

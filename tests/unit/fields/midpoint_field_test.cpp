@@ -1,0 +1,417 @@
+// Ground by midpoint displacement is what its definition says, for a tile as for an edge and a direction, at all levels
+// and over all edges of the solid; and its bounds hold against what finer levels really do.
+
+#include "server/fields/midpoint_field.h"
+
+#include <bit>
+#include <cstdio>
+#include <map>
+#include <tuple>
+
+#include "common/tiling/ico_sphere.h"
+#include "common/tiling/tile_neighbours.h"
+#include "server/fields/midpoint_keys.h"
+#include "tests/unit/fields/midpoint_ground.h"
+
+namespace terrane {
+namespace {
+
+using namespace test;
+
+class MidpointGround : public testing::TestWithParam<Scheme> {
+ protected:
+  Scheme scheme() const { return GetParam(); }
+  Body body_ = midpointBody(GetParam());
+  std::unique_ptr<const HeightField> field_ = makeHeightField(body_, bestSimdPath());
+  std::mt19937_64 random_{kGroundSeed};
+};
+INSTANTIATE_TEST_SUITE_P(Schemes, MidpointGround, bothSchemes(), nameOfScheme);
+
+/// The definition, word for word: a vertex of a whole face, by recursion up to the corners of the solid.
+class Definition {
+ public:
+  explicit Definition(const Body& body) : scheme_(body.schemes.front()), displacement_(displacementOf(body)) {}
+
+  double height(int face, int gridLevel, std::int64_t i, std::int64_t j) {
+    const auto [known, fresh] = heights_.try_emplace({face, gridLevel, i, j}, 0);
+    if (!fresh) return known->second;
+    const double height = compute(face, gridLevel, i, j);
+    return heights_[{face, gridLevel, i, j}] = height;
+  }
+
+ private:
+  VertexKey key(int face, int gridLevel, std::int64_t i, std::int64_t j) const {
+    if (scheme_ == Scheme::Cube) return cubeVertexKey(face, gridLevel, i, j);
+    return icoVertexKey(face, {(std::int64_t{1} << gridLevel) - i - j, i, j});
+  }
+  double compute(int face, int gridLevel, std::int64_t i, std::int64_t j) {
+    const double moved = displacement_.meters(gridLevel, key(face, gridLevel, i, j));
+    if (gridLevel == 0) return moved;
+    const auto above = [&](std::int64_t di, std::int64_t dj) {
+      return height(face, gridLevel - 1, (i + di) / 2, (j + dj) / 2);
+    };
+    const bool oddI = i % 2 != 0, oddJ = j % 2 != 0;
+    if (!oddI && !oddJ) return above(0, 0);
+    if (!oddJ) return (above(-1, 0) + above(1, 0)) / 2 + moved;
+    if (!oddI) return (above(0, -1) + above(0, 1)) / 2 + moved;
+    if (scheme_ == Scheme::Ico) return (above(-1, 1) + above(1, -1)) / 2 + moved;
+    return ((above(-1, -1) + above(1, 1)) + (above(-1, 1) + above(1, -1))) / 4 + moved;
+  }
+
+  Scheme scheme_;
+  MidpointDisplacement displacement_;
+  std::map<std::tuple<int, int, std::int64_t, std::int64_t>, double> heights_;
+};
+
+/// The place on its whole face of a vertex of a tile's grid.
+std::array<std::int64_t, 2> placeOnFace(const FacePath& path, int cells, int i, int j) {
+  if (path.scheme() == Scheme::Cube)
+    return {std::int64_t{path.column()} * cells + i, std::int64_t{path.row()} * cells + j};
+  const FaceWeights weights = gridVertexWeights(triangleTile(path), cells, {i, j});
+  return {weights.y, weights.z};
+}
+
+TEST_P(MidpointGround, OfATileIsTheDefinitionsToTheBit) {
+  Definition definition(body_);
+  for (int level = 0; level <= FacePath::kMaxLevel; ++level) {
+    const int cells = 1 << (level % 8);
+    const FacePath path = randomTileOf(random_, scheme(), level);
+    const SurfaceSamples samples = sampledTile(*field_, body_, path, cells);
+    std::size_t at = 0;
+    for (int j = 0; j <= cells; ++j) {
+      for (int i = 0; i <= (scheme() == Scheme::Ico ? cells - j : cells); ++i, ++at) {
+        const auto [faceI, faceJ] = placeOnFace(path, cells, i, j);
+        ASSERT_EQ(samples.heightMeters[at], definition.height(path.face(), level + levelsOf(cells), faceI, faceJ))
+            << path.text() << " " << i << "," << j;
+      }
+    }
+    ASSERT_EQ(at, samples.heightMeters.size());
+  }
+}
+
+/// Along each edge of a tile, as skirts ask for it, coarser and finer by a level too.
+TEST_P(MidpointGround, AlongAnEdgeIsTheGrids) {
+  for (int level = 1; level <= 29; level += 2) {
+    const FacePath path = randomTileOf(random_, scheme(), level);
+    for (const int cells : {4, 8, 16}) {
+      const SurfaceSamples grid = sampledTile(*field_, body_, path, cells);
+      for (int edge = 0; edge < edgeCount(scheme()); ++edge) {
+        const SurfaceSamples along = sampledTile(*field_, body_, path, cells, edge);
+        ASSERT_EQ(along.heightMeters.size(), static_cast<std::size_t>(cells) + 1);
+        for (int k = 0; k <= cells; ++k) {
+          const int side = cells + 1, back = cells - k;
+          const std::array<int, 4> ofCube{k, k * side + cells, cells * side + back, back * side};
+          const int index = scheme() == Scheme::Cube ? ofCube[static_cast<std::size_t>(edge)]
+                                                     : triangleGridIndex(cells, edgeVertex(cells, edge, k));
+          ASSERT_EQ(along.heightMeters[static_cast<std::size_t>(k)], grid.heightMeters[static_cast<std::size_t>(index)])
+              << path.text() << " edge " << edge;
+        }
+      }
+    }
+  }
+}
+
+/// A vertex that a tile has in common with its parent has one height in both.
+TEST_P(MidpointGround, KeepsAVertexHeightAtAllFinerLevels) {
+  const int cells = 16;
+  for (int level = 0; level < FacePath::kMaxLevel; ++level) {
+    const FacePath path = randomTileOf(random_, scheme(), level);
+    const SurfaceSamples parent = sampledTile(*field_, body_, path, cells);
+    int moved = 0;
+    for (int digit = 0; digit < 4; ++digit) {
+      const SurfaceSamples child = sampledTile(*field_, body_, path.child(digit), cells);
+      std::size_t at = 0;
+      for (int j = 0; j <= cells; ++j) {
+        for (int i = 0; i <= (scheme() == Scheme::Ico ? cells - j : cells); ++i, ++at) {
+          const bool cube = scheme() == Scheme::Cube;
+          const auto [a, b] = parentGridVertices(digit, cells, {i, j});
+          const std::array<int, 2> cubeParent{(digit & 1) * cells / 2 + i / 2, (digit >> 1) * cells / 2 + j / 2};
+          const auto above = static_cast<std::size_t>(cube ? cubeParent[1] * (cells + 1) + cubeParent[0]
+                                                           : triangleGridIndex(cells, a));
+          if (i % 2 == 0 && j % 2 == 0) {
+            ASSERT_EQ(child.heightMeters[at], parent.heightMeters[above]) << path.text() << " child " << digit;
+          } else {
+            moved += child.heightMeters[at] != parent.heightMeters[above] ? 1 : 0;
+          }
+        }
+      }
+    }
+    EXPECT_GT(moved, 100) << "the control: others have heights of their own";
+  }
+}
+
+std::vector<glm::dvec3> directionsOf(const FacePath& path, int cells) {
+  const auto count = static_cast<std::size_t>(triangleGridSize(cells));
+  std::vector<glm::dvec3> out;
+  if (path.scheme() == Scheme::Cube) {
+    for (int j = 0; j <= cells; ++j)
+      for (int i = 0; i <= cells; ++i) {
+        const auto [faceI, faceJ] = placeOnFace(path, cells, i, j);
+        out.push_back(cubeGridDirection(path.face(), path.level() + levelsOf(cells), static_cast<std::uint64_t>(faceI),
+                                        static_cast<std::uint64_t>(faceJ)));
+      }
+    return out;
+  }
+  std::vector<double> x(count), y(count), z(count);
+  icoGridDirections(kIcoMap, path, cells, {x, y, z});
+  for (std::size_t i = 0; i < count; ++i) out.emplace_back(x[i], y[i], z[i]);
+  return out;
+}
+
+/// Samples of single directions, of the surface of a grid level.
+SurfaceSamples sampledPoints(const HeightField& field, const Body& body, const std::vector<glm::dvec3>& points,
+                             int gridLevel) {
+  Directions directions;
+  for (const glm::dvec3& point : points) directions.add(point);
+  return evaluate(field, directions, 2.0 * cellMeters(body, gridLevel));
+}
+
+/// The direction of a vertex gives its height but for what rounding moves the direction along the ground: some 1e-14
+/// of the radius at a slope of at most 5, and so much less than a lattice step.
+TEST_P(MidpointGround, AtAVertexDirectionIsTheVertexHeight) {
+  double worst = 0;
+  for (int level = 0; level <= 30; level += 3) {
+    const FacePath path = randomTileOf(random_, scheme(), level);
+    const std::vector<glm::dvec3> points = directionsOf(path, 8);
+    const SurfaceSamples grid = sampledTile(*field_, body_, path, 8);
+    const SurfaceSamples single = sampledPoints(*field_, body_, points, level + 3);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      worst = std::max(worst, std::abs(single.heightMeters[i] - grid.heightMeters[i]));
+  }
+  std::printf("at most %.3g m from the vertex' own height\n", worst);
+  EXPECT_LT(worst, 5 * 2e-14 * kMoonRadius);
+}
+
+/// Between vertices the surface of a level is no farther from that of any finer one than omittedAmplitudeMeters says.
+/// Directions are those of the finest vertices, where the two differ most.
+TEST_P(MidpointGround, LeavesOutNoMoreThanItSays) {
+  double closest = 0;
+  for (int coarse = 0; coarse <= 24; coarse += 4) {
+    for (const int finer : {1, 2, 5}) {
+      const int fine = coarse + finer;
+      const double bound = field_->omittedAmplitudeMeters(2 * cellMeters(body_, coarse), 2 * cellMeters(body_, fine));
+      for (int k = 0; k < 8; ++k) {
+        const FacePath path = randomTileOf(random_, scheme(), std::max(0, fine - 5));
+        const int cells = 1 << (fine - path.level());
+        const std::vector<glm::dvec3> points = directionsOf(path, cells);
+        const SurfaceSamples below = sampledPoints(*field_, body_, points, coarse);
+        const SurfaceSamples above = sampledTile(*field_, body_, path, cells);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const double apart = std::abs(above.heightMeters[i] - below.heightMeters[i]);
+          ASSERT_LE(apart, bound + 1e-7) << "of grid level " << coarse << " against " << fine;
+          if (finer == 1) closest = std::max(closest, apart / bound);
+        }
+      }
+    }
+  }
+  std::printf("one level leaves out up to %.4f of its bound\n", closest);
+  EXPECT_GT(closest, 0.99) << "a bound that nothing comes near holds nothing";
+}
+
+TEST_P(MidpointGround, HasNoInterpolationErrorOnItsOwnGridAndTheFinerLevelsElsewhere) {
+  const double cell = cellMeters(body_, 12);
+  EXPECT_EQ(field_->interpolationErrorMeters(2 * cell, cell), 0);
+  EXPECT_EQ(field_->interpolationErrorMeters(2 * cell, cell / 2), 0);
+  EXPECT_EQ(field_->interpolationErrorMeters(2 * cell, 4 * cell), field_->omittedAmplitudeMeters(8 * cell, 2 * cell));
+}
+
+TEST_P(MidpointGround, StaysWithinItsRange) {
+  const HeightRange range = field_->heightRange();
+  double lowest = 0, highest = 0;
+  for (int k = 0; k < 200; ++k) {
+    const SurfaceSamples samples = sampledTile(*field_, body_, randomTileOf(random_, scheme(), k % 4), 32);
+    lowest = std::min(lowest, *std::ranges::min_element(samples.heightMeters));
+    highest = std::max(highest, *std::ranges::max_element(samples.heightMeters));
+  }
+  std::printf("heights %.0f to %.0f m of %.0f to %.0f m\n", lowest, highest, range.minMeters, range.maxMeters);
+  EXPECT_GE(lowest, range.minMeters);
+  EXPECT_LE(highest, range.maxMeters);
+  EXPECT_GT(highest - lowest, 0.3 * (range.maxMeters - range.minMeters));
+}
+
+/// Of neighbours' heights, by whether the field's largest slopes and reliefs are ever exceeded, on bodies of all sizes
+/// at the largest amplitude that is allowed.
+TEST_P(MidpointGround, IsNoSteeperThanItSays) {
+  double steepest = 0, deepest = 0;
+  for (const double radius : {kMinRadiusMeters, kMoonRadius, kMaxRadiusMeters}) {
+    for (const double regularity : {0.0, 1.0, 3.0}) {
+      const Body body = midpointBody(scheme(), radius, regularity);
+      const auto field = makeHeightField(body, bestSimdPath());
+      const MidpointDisplacement displacement = displacementOf(body);
+      for (int level = 0; level <= maxLevel(radius, scheme()); ++level) {
+        const FacePath path = randomTileOf(random_, scheme(), level);
+        const SurfaceSamples samples = sampledTile(*field, body, path, 16);
+        const auto [low, high] = std::ranges::minmax_element(samples.heightMeters);
+        ASSERT_LE(*high - *low, displacement.largestReliefMeters(scheme(), level));
+        deepest = std::max(deepest, (*high - *low) / nominalTileWidthMeters(radius, level, scheme()));
+        const std::vector<glm::dvec3> at = directionsOf(path, 16);
+        for (std::size_t i = 0; i < 16; ++i) {
+          const double rise = std::abs(samples.heightMeters[i + 1] - samples.heightMeters[i]);
+          ASSERT_LE(rise, displacement.largestRiseMeters(level + 4));
+          const double slope = rise / (radius * glm::length(at[i + 1] - at[i]));
+          ASSERT_LE(slope, kSteepestSlope);
+          steepest = std::max(steepest, slope);
+        }
+      }
+    }
+  }
+  std::printf("steepest edge %.2f of %.1f, deepest tile %.2f widths\n", steepest, kSteepestSlope, deepest);
+}
+
+/// The mean of the gradients of the triangles around a vertex, by their areas, in space.
+glm::dvec3 gradientOfTriangles(const glm::dvec3& here, double height, const std::vector<glm::dvec3>& beside,
+                               const std::vector<double>& heights) {
+  glm::dvec3 sum(0.0);
+  double areas = 0;
+  for (std::size_t k = 0; k < beside.size(); ++k) {
+    const std::size_t next = (k + 1) % beside.size();
+    const glm::dvec3 a = (beside[k] - here) * kMoonRadius, b = (beside[next] - here) * kMoonRadius;
+    const glm::dvec3 normal = glm::cross(a, b);
+    const double area = glm::length(normal);
+    // The vector in the triangle's plane whose product with a and b is what the height rises by.
+    sum += glm::cross(b * (heights[k] - height) - a * (heights[next] - height), normal) / area;
+    areas += area;
+  }
+  return sum / areas;
+}
+
+using Bits = std::array<std::uint64_t, 3>;
+struct VertexSample {
+  double heightMeters;
+  std::array<float, 3> gradient;
+  bool operator==(const VertexSample&) const = default;
+};
+
+/// All of a tile's samples by the bits of their directions, which tiles share.
+std::map<Bits, VertexSample> samplesByDirection(const HeightField& field, const Body& body, const FacePath& path) {
+  const int cells = 8;
+  const SurfaceSamples samples = sampledTile(field, body, path, cells);
+  const std::vector<glm::dvec3> at = directionsOf(path, cells);
+  std::map<Bits, VertexSample> out;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // one zero
+    out[{bits(at[i].x), bits(at[i].y), bits(at[i].z)}] = {
+        samples.heightMeters[i], {samples.gradientX[i], samples.gradientY[i], samples.gradientZ[i]}};
+  }
+  return out;
+}
+
+/// Over all edges and corners of all faces, and of random tiles.
+TEST_P(MidpointGround, GivesSharedVerticesTheSameBitsInAllTiles) {
+  std::vector<FacePath> tiles;
+  for (int face = 0; face < faceCount(scheme()); ++face)
+    for (int corner = 0; corner < edgeCount(scheme()); ++corner) {
+      FacePath path = FacePath::wholeFace(scheme(), face);
+      for (int level = 0; level <= 30; ++level) {
+        if (level % 6 == 0) tiles.push_back(path);
+        if (level < 30) path = path.child(corner);
+      }
+    }
+  for (int k = 0; k < 300; ++k) tiles.push_back(randomTileOf(random_, scheme(), k % 31));
+  std::size_t shared = 0;
+  for (const FacePath& path : tiles) {
+    const auto own = samplesByDirection(*field_, body_, path);
+    for (const FacePath& beside : tilesAround(path)) {
+      for (const auto& [direction, sample] : samplesByDirection(*field_, body_, beside)) {
+        const auto same = own.find(direction);
+        if (same == own.end()) continue;
+        ++shared;
+        ASSERT_EQ(same->second, sample) << path.text() << " and " << beside.text();
+      }
+    }
+  }
+  EXPECT_GT(shared, tiles.size() * 9 * 3);
+}
+
+/// Up to what the ground curves within a cell.
+TEST_P(MidpointGround, HasTheGradientOfItsMesh) {
+  const bool ico = scheme() == Scheme::Ico;
+  using Steps = std::vector<std::array<int, 2>>;
+  const Steps steps =
+      ico ? Steps{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}} : Steps{{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  for (int level = 0; level <= 28; level += 4) {
+    const int cells = 32;
+    const FacePath path = randomTileOf(random_, scheme(), level);
+    const SurfaceSamples samples = sampledTile(*field_, body_, path, cells);
+    const std::vector<glm::dvec3> at = directionsOf(path, cells);
+    const double curved = nominalTileWidthMeters(1.0, level, scheme()) / cells;
+    double off = 0, slopes = 0;
+    for (int j = 1; j < cells; ++j) {
+      for (int i = 1; i < (ico ? cells - j : cells); ++i) {
+        const auto index = [&](int di, int dj) {
+          return static_cast<std::size_t>(ico ? triangleGridIndex(cells, {i + di, j + dj})
+                                              : (j + dj) * (cells + 1) + i + di);
+        };
+        std::vector<glm::dvec3> beside;
+        std::vector<double> heights;
+        for (const auto& [di, dj] : steps) {
+          beside.push_back(at[index(di, dj)]);
+          heights.push_back(samples.heightMeters[index(di, dj)]);
+        }
+        const std::size_t here = index(0, 0);
+        const glm::dvec3 expected = gradientOfTriangles(at[here], samples.heightMeters[here], beside, heights);
+        const glm::dvec3 gradient(samples.gradientX[here], samples.gradientY[here], samples.gradientZ[here]);
+        ASSERT_LT(std::abs(glm::dot(gradient, at[here])), 1e-6) << "along the sphere";
+        off = std::max(off, glm::length(gradient - expected));
+        slopes = std::max(slopes, glm::length(expected));
+      }
+    }
+    EXPECT_LT(off, (2 * curved + 1e-4) * slopes) << path.text();
+  }
+}
+
+/// More regularity puts more of the ground's unevenness into small scales.
+TEST_P(MidpointGround, IsRougherInDetailTheLargerTheRegularity) {
+  double before = 0;
+  for (const double regularity : {0.0, 0.5, 1.0, 2.0, 3.0}) {
+    const Body body = midpointBody(scheme(), kMoonRadius, regularity);
+    const auto field = makeHeightField(body, bestSimdPath());
+    const auto slope = [&](int level) {
+      double squares = 0;
+      int count = 0;
+      for (int k = 0; k < 30; ++k) {
+        const SurfaceSamples samples = sampledTile(*field, body, randomTileOf(random_, scheme(), level), 16);
+        for (std::size_t i = 0; i < 16; ++i, ++count)
+          squares += std::pow((samples.heightMeters[i + 1] - samples.heightMeters[i]) / cellMeters(body, level + 4), 2);
+      }
+      return std::sqrt(squares / count);
+    };
+    const double coarse = slope(4), fine = slope(24), ratio = fine / coarse;
+    std::printf("regularity %.1f: slopes %.4f at grid level 8, %.4f at 28\n", regularity, coarse, fine);
+    EXPECT_GT(ratio, before);
+    before = ratio;
+  }
+}
+
+TEST(MidpointField, IsAnotherGroundForEverySetting) {
+  const Body body = midpointBody(Scheme::Ico, kMoonRadius, 1, 0.5);
+  const auto field = makeHeightField(body, bestSimdPath());
+  const auto differs = [&](const Body& other) {
+    const auto changed = makeHeightField(other, bestSimdPath());
+    EXPECT_NE(changed->identity(), field->identity());
+    const FacePath path = *FacePath::parse("ico/7/0123");
+    EXPECT_NE(sampledTile(*changed, other, path, 8).heightMeters, sampledTile(*field, body, path, 8).heightMeters);
+  };
+  Body other = body;
+  other.seed += 1;
+  differs(other);
+  other = body;
+  other.fieldParameters["amplitude"] *= 1.001;
+  differs(other);
+  other = body;
+  other.fieldParameters["regularity"] = 1.01;
+  differs(other);
+}
+
+TEST(MidpointField, RefusesAnAmplitudeBeyondTheLargest) {
+  for (const Scheme scheme : {Scheme::Cube, Scheme::Ico}) {
+    EXPECT_FALSE(checkHeightField(midpointBody(scheme)).has_error());
+    const Result<void> checked = checkHeightField(midpointBody(scheme, kMoonRadius, 1, 1.0001));
+    ASSERT_TRUE(checked.has_error());
+    EXPECT_EQ(checked.error().field, "midpoint.amplitude");
+    EXPECT_EQ(checked.error().kind, ErrorKind::TooLarge);
+  }
+}
+
+}  // namespace
+}  // namespace terrane

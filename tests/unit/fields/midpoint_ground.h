@@ -1,0 +1,71 @@
+#pragma once
+// Bodies of midpoint displacement and what their field gives for tiles, edges and directions, in either scheme.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "server/fields/midpoint_field.h"
+#include "tests/support/both_schemes.h"
+#include "tests/support/ico_points.h"
+#include "tests/unit/fields/field_samples.h"
+
+namespace terrane::test {
+
+inline constexpr std::uint64_t kGroundSeed = 1982;
+
+/// amplitude: of what the body may have at most.
+inline Body midpointBody(Scheme scheme, double radiusMeters = kMoonRadius, double regularity = 1,
+                         double amplitude = 1) {
+  Body body = tiledBy(scheme, testBody(FieldKind::Midpoint, radiusMeters, kGroundSeed));
+  body.fieldParameters["amplitude"] = amplitude * mostAmplitudeMeters(radiusMeters, scheme, regularity);
+  body.fieldParameters["regularity"] = regularity;
+  return body;
+}
+
+inline MidpointDisplacement displacementOf(const Body& body) {
+  return {body.fieldParameters.at("amplitude"), body.fieldParameters.at("regularity"), body.seed};
+}
+
+inline FacePath randomTileOf(std::mt19937_64& random, Scheme scheme, int level) {
+  if (scheme == Scheme::Ico) return randomIcoTile(random, level);
+  FacePath path = FacePath::wholeFace(scheme, static_cast<int>(random() % 6));
+  // Each third tile keeps to an edge or corner of its face for many levels.
+  const int digit = static_cast<int>(random() % 4), other = digit ^ (random() % 2 != 0 ? 1 : 2);
+  const bool atEdge = random() % 3 == 0;
+  while (path.level() < level)
+    path = path.child(atEdge ? (random() % 2 != 0 ? digit : other) : static_cast<int>(random() % 4));
+  return path;
+}
+
+inline double cellMeters(const Body& body, int gridLevel) {
+  return nominalTileWidthMeters(body.radiusMeters, 0, body.schemes.front()) * std::ldexp(1.0, -gridLevel);
+}
+
+inline int levelsOf(int cells) {
+  int levels = 0;
+  while (1 << levels < cells) ++levels;
+  return levels;
+}
+
+/// As the builder asks for a tile, or, with an edge, as the skirts ask. Needs no directions.
+inline SurfaceSamples sampledTile(const HeightField& field, const Body& body, const FacePath& path, int cells,
+                                  int edge = GridPlace::kWholeGrid) {
+  const auto side = static_cast<std::size_t>(cells) + 1;
+  SampleBatch batch;
+  batch.rowLength = side;
+  batch.rows = edge == GridPlace::kWholeGrid ? side : 1;
+  if (edge == GridPlace::kWholeGrid && path.scheme() == Scheme::Ico) {
+    batch.rowLength = static_cast<std::size_t>(triangleGridSize(cells));
+    batch.rows = 1;
+  }
+  batch.grid = GridPlace{path, cells, edge};
+  SurfaceSamples samples;
+  field.evaluate(batch, 2.0 * cellMeters(body, path.level() + levelsOf(cells)), samples);
+  return samples;
+}
+
+}  // namespace terrane::test
