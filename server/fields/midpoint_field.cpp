@@ -13,6 +13,13 @@ namespace {
 
 double parameter(const Body& body, std::string_view name) { return body.fieldParameters.find(name)->second; }
 
+/// Grey by height: lowlands dark, highlands bright. Heights beyond half of what there can be are as good as never.
+float reflectanceAt(double heightMeters, double largestMeters) noexcept {
+  constexpr double kMiddle = 0.14, kSpan = 0.1;
+  const double share = largestMeters > 0 ? std::clamp(2.0 * heightMeters / largestMeters, -1.0, 1.0) : 0.0;
+  return static_cast<float>(kMiddle + kSpan * (share * (1.5 - 0.5 * share * share)));
+}
+
 Scheme schemeOf(const Body& body) noexcept { return body.schemes.empty() ? Scheme::Cube : body.schemes.front(); }
 
 }  // namespace
@@ -52,19 +59,17 @@ void MidpointField::evaluate(const SampleBatch& batch, double minWavelengthMeter
   out.gradientX.resize(count);
   out.gradientY.resize(count);
   out.gradientZ.resize(count);
-  out.reflectance.clear();
+  out.reflectance.resize(count);
   const midpoint::Surface surface{displacement_, gridLevelOf(minWavelengthMeters), radius_};
+  if (batch.grid && batch.grid->skirtEdge != GridPlace::kWholeGrid)
+    return sampleEdge(surface, *batch.grid, out.heightMeters);
   if (batch.grid) {
-    const bool whole = batch.grid->skirtEdge == GridPlace::kWholeGrid;
-    return whole ? sampleGrid(surface, *batch.grid, out) : sampleEdge(surface, *batch.grid, out.heightMeters);
+    sampleGrid(surface, *batch.grid, out);
+  } else {
+    sampleDirections(surface, scheme_, batch, out);
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto sample = samplePoint(surface, scheme_, {batch.x[i], batch.y[i], batch.z[i]});
-    out.heightMeters[i] = sample.heightMeters;
-    out.gradientX[i] = static_cast<float>(sample.gradient.x);
-    out.gradientY[i] = static_cast<float>(sample.gradient.y);
-    out.gradientZ[i] = static_cast<float>(sample.gradient.z);
-  }
+  const double largest = heightRange().maxMeters;
+  for (std::size_t i = 0; i < count; ++i) out.reflectance[i] = reflectanceAt(out.heightMeters[i], largest);
 }
 
 double MidpointField::omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept {

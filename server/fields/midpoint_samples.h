@@ -2,7 +2,6 @@
 // What the midpoint field's samples are worked out with: a tile's grid, one of its edges, or single directions. Each
 // thread keeps memory of a tile's size between calls and no more.
 
-#include <glm/vec3.hpp>
 #include <span>
 
 #include "server/fields/height_field.h"
@@ -27,11 +26,7 @@ void sampleGrid(const Surface& surface, const GridPlace& grid, SurfaceSamples& o
 /// Heights along an edge.
 void sampleEdge(const Surface& surface, const GridPlace& grid, std::span<double> heightMeters);
 
-/// Height and gradient at a unit direction.
-struct PointSample {
-  double heightMeters = 0;
-  glm::dvec3 gradient{0.0};
-};
-PointSample samplePoint(const Surface& surface, Scheme scheme, const glm::dvec3& direction);
+/// Heights and gradients at unit directions.
+void sampleDirections(const Surface& surface, Scheme scheme, const SampleBatch& batch, SurfaceSamples& out);
 
 }  // namespace terrane::midpoint

@@ -15,8 +15,8 @@
 #include "common/tiling/lattice.h"
 #include "proto/gltf_tile.h"
 #include "server/build/tile_builder.h"
-#include "server/fields/midpoint_displacement.h"
 #include "tests/support/edge_vertices.h"
+#include "tests/support/grounds.h"
 #include "tests/support/ico_points.h"
 #include "tests/support/moon_body.h"
 
@@ -99,31 +99,12 @@ int solidCorner(Scheme scheme, const LatticePoint& point) {
   return nearest;
 }
 
-struct Ground {
-  Scheme scheme;
-  FieldKind field;
-};
-
-Body bodyOf(const Ground& ground, double radiusMeters) {
-  Body body = tiledBy(ground.scheme, testBody(ground.field, radiusMeters));
-  if (ground.field == FieldKind::Midpoint)
-    body.fieldParameters["amplitude"] = mostAmplitudeMeters(radiusMeters, ground.scheme, 1);
-  return body;
-}
-
-class Seam : public testing::TestWithParam<Ground> {};
-INSTANTIATE_TEST_SUITE_P(Grounds, Seam,
-                         testing::Values(Ground{Scheme::Cube, FieldKind::Lunar}, Ground{Scheme::Ico, FieldKind::Lunar},
-                                         Ground{Scheme::Cube, FieldKind::Midpoint},
-                                         Ground{Scheme::Ico, FieldKind::Midpoint}),
-                         [](const auto& ground) {
-                           return std::string(schemeName(ground.param.scheme)) + "_" +
-                                  std::string(fieldRow(ground.param.field).name);
-                         });
+class Seam : public testing::TestWithParam<test::Ground> {};
+INSTANTIATE_TEST_SUITE_P(Grounds, Seam, test::allGrounds(), test::nameOfGround);
 
 TEST_P(Seam, AllEdgesOfFacesAgree) {
   const Scheme scheme = GetParam().scheme;
-  const TileBuilder builder(bodyOf(GetParam(), kMoonRadiusMeters), {}, bestSimdPath());
+  const TileBuilder builder(test::bodyOf(GetParam()), {}, bestSimdPath());
   for (const int level : {0, 3}) {
     for (int face = 0; face < faceCount(scheme); ++face) {
       for (int edge = 0; edge < edgeCount(scheme); ++edge) {
@@ -137,7 +118,7 @@ TEST_P(Seam, AllEdgesOfFacesAgree) {
 
 TEST_P(Seam, AllFacesAgreeInEachCornerOfTheSolid) {
   const Scheme scheme = GetParam().scheme;
-  const TileBuilder builder(bodyOf(GetParam(), kMoonRadiusMeters), {.cellsPerEdge = 16, .draco = {}}, bestSimdPath());
+  const TileBuilder builder(test::bodyOf(GetParam()), {.cellsPerEdge = 16, .draco = {}}, bestSimdPath());
   for (const int level : {0, 5, builder.info().selection.maxLevel}) {
     std::map<int, std::vector<EdgeVertex>> corners;
     for (int face = 0; face < faceCount(scheme); ++face) {
@@ -155,7 +136,7 @@ TEST_P(Seam, AllFacesAgreeInEachCornerOfTheSolid) {
 }
 
 /// Every level 0 .. cap of a body, its radius log-uniform over all that the lattice serves, relief and all.
-void checkRandomPairs(const Ground& ground, int cellsPerEdge, int bodies, int pairs) {
+void checkRandomPairs(const test::Ground& ground, int cellsPerEdge, int bodies, int pairs) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> share(0, 1);
   std::printf("seed %u, %d pairs of %d cells on %d bodies\n", kSeed, pairs, cellsPerEdge, bodies);
@@ -165,8 +146,9 @@ void checkRandomPairs(const Ground& ground, int cellsPerEdge, int bodies, int pa
                                       : kMinRadiusMeters * std::pow(kMaxRadiusMeters / kMinRadiusMeters, share(random));
     // Relief that was made for the Moon would turn a small body inside out, so those are bare.
     const bool bare = ground.field == FieldKind::Lunar && (radius < 1e6 || radius > 1e7);
-    const Ground fitting{ground.scheme, bare ? FieldKind::Sphere : ground.field};
-    const TileBuilder builder(bodyOf(fitting, radius), {.cellsPerEdge = cellsPerEdge, .draco = {}}, bestSimdPath());
+    const test::Ground fitting(ground.scheme, bare ? FieldKind::Sphere : ground.field);
+    const TileBuilder builder(test::bodyOf(fitting, radius), {.cellsPerEdge = cellsPerEdge, .draco = {}},
+                              bestSimdPath());
     for (int pair = 0; pair < pairs / bodies; ++pair) {
       const FacePath path = randomTile(random, ground.scheme, pair % (builder.info().selection.maxLevel + 1));
       const int edge = static_cast<int>(random() % static_cast<unsigned>(edgeCount(ground.scheme)));

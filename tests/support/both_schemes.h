@@ -10,8 +10,6 @@
 namespace terrane::test {
 
 inline auto bothSchemes() { return testing::Values(Scheme::Cube, Scheme::Ico); }
-inline std::string nameOfScheme(const testing::TestParamInfo<Scheme>& scheme) {
-  return std::string(schemeName(scheme.param));
-}
+inline constexpr auto nameOfScheme = [](const auto& scheme) { return std::string(schemeName(scheme.param)); };
 
 }  // namespace terrane::test

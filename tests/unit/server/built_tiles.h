@@ -1,27 +1,31 @@
 #pragma once
-// Tiles of the test Moon as the builder makes them, in either scheme, and where their vertices are.
+// Tiles of the test Moon, and of other grounds of its size, as the builder makes them in either scheme, and where their
+// vertices are.
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <map>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "common/tiling/lattice.h"
 #include "server/build/tile_builder.h"
 #include "tests/support/both_schemes.h"
+#include "tests/support/grounds.h"
 #include "tests/support/ico_points.h"
-#include "tests/support/moon_body.h"
 
 namespace terrane::test {
 
 inline constexpr double kMoon = 1'737'400.0;
 inline constexpr std::uint64_t kBodySeed = 1;
 
-inline const TileBuilder& moon(Scheme scheme) {
-  static const TileBuilder cube(tiledBy(Scheme::Cube, testMoon(kBodySeed)), {}, bestSimdPath());
-  static const TileBuilder ico(tiledBy(Scheme::Ico, testMoon(kBodySeed)), {}, bestSimdPath());
-  return scheme == Scheme::Cube ? cube : ico;
+inline const TileBuilder& builderOf(const Ground& ground) {
+  static std::map<std::pair<Scheme, FieldKind>, TileBuilder> builders;
+  const auto [made, fresh] = builders.try_emplace({ground.scheme, ground.field}, bodyOf(ground, kMoon, kBodySeed),
+                                                  WireSettings{}, bestSimdPath());
+  return made->second;
 }
 
 inline FacePath randomTile(std::mt19937_64& random, Scheme scheme, int level) {
@@ -43,15 +47,15 @@ inline glm::dvec3 position(const Tile& tile, std::size_t vertex) {
                          tile.metadata.stepExponent);
 }
 
-/// Tests that hold for tiles of both schemes.
-class OfScheme : public testing::TestWithParam<Scheme> {
+/// Tests that hold for tiles of both schemes: of the Moon, or of all grounds.
+class OfScheme : public testing::TestWithParam<Ground> {
  protected:
-  static const TileBuilder& builder() { return moon(GetParam()); }
+  static const TileBuilder& builder() { return builderOf(GetParam()); }
   static int maxLevel() { return builder().info().selection.maxLevel; }
   static FacePath randomTile(std::mt19937_64& random, int level) { return test::randomTile(random, GetParam(), level); }
   /// A tile of the scheme by what follows the scheme in its name.
   static FacePath path(std::string_view faceAndDigits) {
-    return FacePath::parse(std::string(schemeName(GetParam())) + "/" + std::string(faceAndDigits)).value();
+    return FacePath::parse(std::string(schemeName(GetParam().scheme)) + "/" + std::string(faceAndDigits)).value();
   }
 };
 

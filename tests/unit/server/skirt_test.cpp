@@ -45,7 +45,7 @@ class Skirts : public OfScheme {
   std::shared_ptr<const TileTopology> topology_;
   std::size_t gridCount_;
 };
-INSTANTIATE_TEST_SUITE_P(Schemes, Skirts, bothSchemes(), nameOfScheme);
+INSTANTIATE_TEST_SUITE_P(Grounds, Skirts, allGrounds(), nameOfGround);
 
 TEST_P(Skirts, HangTowardsTheCentreLeaningALittleOutwards) {
   double farthest = 0;
@@ -160,7 +160,7 @@ TEST_P(Skirts, TakeGroundForNoLessSteepThanItIs) {
     }
   }
   std::printf("steepest edge: %.2f\n", steepest);
-  EXPECT_LE(steepest, 5.0);
+  EXPECT_LE(steepest, kSteepestSlope);
 }
 
 }  // namespace

@@ -10,6 +10,11 @@
 namespace terrane::midpoint {
 namespace {
 
+struct Sample {
+  double heightMeters = 0;
+  glm::dvec3 gradient{0.0};
+};
+
 using Corners = std::array<glm::dvec3, kTriangleCorners>;
 constexpr std::size_t kCentreChild = 3;
 
@@ -62,7 +67,7 @@ std::array<double, 3> weightsIn(const Corners& corners, int level, const glm::dv
   return share;
 }
 
-PointSample sampleTriangle(const Surface& surface, const glm::dvec3& direction) {
+Sample sampleTriangle(const Surface& surface, const glm::dvec3& direction) {
   thread_local Subdivision<IcoTiling<true>> subdivision;
   subdivision.start(surface.displacement, surface.gridLevel, icosahedronFaceAt(direction), 0);
   const auto corners = [&] {
@@ -83,7 +88,7 @@ PointSample sampleTriangle(const Surface& surface, const glm::dvec3& direction) 
           cross(turned, up) / (surface.radiusMeters * dot(up, up))};
 }
 
-PointSample sampleSquare(const Surface& surface, const glm::dvec3& direction) {
+Sample sampleSquare(const Surface& surface, const glm::dvec3& direction) {
   thread_local Subdivision<CubeTiling> subdivision;
   const FaceCoordinates at = cubeFaceCoordinates(direction);
   subdivision.start(surface.displacement, surface.gridLevel, at.face, 0);
@@ -115,8 +120,15 @@ PointSample sampleSquare(const Surface& surface, const glm::dvec3& direction) {
 
 }  // namespace
 
-PointSample samplePoint(const Surface& surface, Scheme scheme, const glm::dvec3& direction) {
-  return scheme == Scheme::Ico ? sampleTriangle(surface, direction) : sampleSquare(surface, direction);
+void sampleDirections(const Surface& surface, Scheme scheme, const SampleBatch& batch, SurfaceSamples& out) {
+  for (std::size_t i = 0; i < batch.count(); ++i) {
+    const glm::dvec3 direction(batch.x[i], batch.y[i], batch.z[i]);
+    const Sample sample = scheme == Scheme::Ico ? sampleTriangle(surface, direction) : sampleSquare(surface, direction);
+    out.heightMeters[i] = sample.heightMeters;
+    out.gradientX[i] = static_cast<float>(sample.gradient.x);
+    out.gradientY[i] = static_cast<float>(sample.gradient.y);
+    out.gradientZ[i] = static_cast<float>(sample.gradient.z);
+  }
 }
 
 }  // namespace terrane::midpoint
