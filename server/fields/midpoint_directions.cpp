@@ -22,11 +22,6 @@ constexpr std::size_t kCentreChild = 3;
 /// that weights by area are the map's.
 constexpr int kFlatLevel = 28;
 
-glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) noexcept {
-  return glm::dvec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
-
 /// Twice the area of (a, b, d), positive to the left of the great circle from a to b; as differences, which are exact
 /// where the three are close.
 double leftOf(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& d) noexcept {

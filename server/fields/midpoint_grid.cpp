@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <tuple>
 
@@ -9,36 +8,37 @@
 namespace terrane::midpoint {
 namespace {
 
-glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) noexcept {
-  return glm::dvec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
-
 bool before(const glm::dvec3& a, const glm::dvec3& b) noexcept {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// The vertices beside one, each once, counter-clockwise, the one with the least direction first.
+/// The vertices beside one, each once, counter-clockwise from the one with the least direction on. Before the first
+/// stands the last, and after the last the first.
 template <class Tiling>
 class Neighbours {
  public:
   Neighbours(const Places& places, int i, int j) noexcept {
-    for (const GridVertex& step : Tiling::kBeside) add(&places.at(i + step.i, j + step.j));
-    // Beside a corner of the solid two places, next to each other, are one vertex.
-    if (count_ > 1 && all_[count_ - 1]->direction == all_[0]->direction) --count_;
-    const auto first = all_.begin(), last = first + static_cast<std::ptrdiff_t>(count_);
-    std::rotate(first,
-                std::min_element(first, last, [](auto* a, auto* b) { return before(a->direction, b->direction); }),
-                last);
+    std::array<const Vertex*, Tiling::kNeighbours> around{};
+    std::size_t least = 0;
+    for (const GridVertex& step : Tiling::kBeside) {
+      const Vertex* vertex = &places.at(i + step.i, j + step.j);
+      // Beside a corner of the solid two places, next to each other, are one vertex.
+      if (count_ > 0 && around[count_ - 1]->direction == vertex->direction) continue;
+      if (count_ > 0 && before(vertex->direction, around[least]->direction)) least = count_;
+      around[count_++] = vertex;
+    }
+    if (around[count_ - 1]->direction == around[0]->direction) --count_;
+    for (std::size_t k = 0; k < count_ + 2; ++k) {
+      const std::size_t at = least + k + count_ - 1;
+      ordered_[k] = around[at >= 2 * count_ ? at - 2 * count_ : at >= count_ ? at - count_ : at];
+    }
   }
   std::size_t count() const noexcept { return count_; }
-  const Vertex& operator[](std::size_t k) const noexcept { return *all_[k % count_]; }
+  /// 0 .. count + 1.
+  const Vertex& operator[](std::size_t k) const noexcept { return *ordered_[k]; }
 
  private:
-  void add(const Vertex* vertex) noexcept {
-    if (count_ == 0 || all_[count_ - 1]->direction != vertex->direction) all_[count_++] = vertex;
-  }
-  std::array<const Vertex*, Tiling::kNeighbours> all_{};
+  std::array<const Vertex*, Tiling::kNeighbours + 2> ordered_{};
   std::size_t count_ = 0;
 };
 
@@ -47,8 +47,8 @@ glm::dvec3 gradientAt(const Places& places, int i, int j, double radiusMeters) n
   const Vertex& here = places.at(i, j);
   const Neighbours<Tiling> beside(places, i, j);
   glm::dvec3 turned(0.0), area(0.0);
-  for (std::size_t k = 0; k < beside.count(); ++k) {
-    const Vertex &now = beside[k], &next = beside[k + 1], &last = beside[k + beside.count() - 1];
+  for (std::size_t k = 1; k <= beside.count(); ++k) {
+    const Vertex &last = beside[k - 1], &now = beside[k], &next = beside[k + 1];
     turned += (next.direction - last.direction) * (now.heightMeters - here.heightMeters);
     area += cross(now.direction - here.direction, next.direction - here.direction);
   }

@@ -33,6 +33,10 @@ struct ChildPlace {
   int i = 0, j = 0, sign = 1;
 };
 
+inline glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) noexcept {
+  return glm::dvec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
 inline glm::dvec3 normalised(const glm::dvec3& p) noexcept {
   const double length = std::sqrt((p.x * p.x + p.y * p.y) + p.z * p.z);  // the order of ico_sphere.cpp
   return glm::dvec3(p.x / length, p.y / length, p.z / length);

@@ -31,14 +31,13 @@ inline constexpr std::size_t kMaxSceneBodies = 64;
 
 /// Errors: one line, complete in message: "moon.toml:4: body[0].radius: "17 parsec" has an unknown unit; allowed: mm,
 /// m, km"; field is the key path ("body[0].radius"), empty for what is no TOML. Kinds: InvalidArgument, Malformed
-/// (syntax, encoding), TooLarge, Unsupported (two schemes).
+/// (syntax, encoding), TooLarge (ground too steep for its body, too), Unsupported (two schemes).
 Result<Scene> parseScene(std::string_view toml, std::string_view fileName);
 /// Errors also: Io, naming the file in message and field.
 Result<Scene> loadSceneFile(const std::filesystem::path& file);
 
-/// A name that ships with the server ("moon", "moon-ico", "smooth") or a path to a .toml file. Errors also: NotFound,
-/// field
-/// "--scene".
+/// A name that ships with the server ("moon", "moon-ico", "fractal", "smooth") or a path to a .toml file. Errors also:
+/// NotFound, field "--scene".
 Result<Scene> loadScene(std::string_view nameOrFile);
 std::vector<std::string> shippedScenes();
 

@@ -1,4 +1,4 @@
-// The bytes of tiles: the same as those in tests/golden, a file for each scheme, on every build. (That they depend on
+// The bytes of tiles: the same as those in tests/golden, a file for each ground, on every build. (That they depend on
 // neither threads, nor the build of the kernels, nor the C library is tile_bytes_test's.) Where they change on purpose,
 // raise kGeneratorVersion and write the file anew:
 //   TERRANE_WRITE_GOLDEN=1 integration_tests --gtest_filter='*GoldenTile.*'
@@ -13,16 +13,16 @@
 #include <random>
 
 #include "server/build/tile_builder.h"
-#include "tests/support/both_schemes.h"
+#include "tests/support/grounds.h"
 #include "tests/support/ico_points.h"
-#include "tests/support/moon_body.h"
 
 namespace terrane {
 namespace {
 
-std::string goldenFile(Scheme scheme) {
-  return std::string(TERRANE_SOURCE_DIR) + "/tests/golden/" +
-         (scheme == Scheme::Cube ? "moon_tiles.txt" : "moon_ico_tiles.txt");
+std::string goldenFile(const test::Ground& ground) {
+  const std::string name = ground.field == FieldKind::Lunar ? "moon" : std::string(fieldRow(ground.field).name);
+  return std::string(TERRANE_SOURCE_DIR) + "/tests/golden/" + name +
+         (ground.scheme == Scheme::Cube ? "_tiles.txt" : "_ico_tiles.txt");
 }
 
 struct Golden {
@@ -30,9 +30,9 @@ struct Golden {
   std::vector<std::string> lines;  ///< "path hash"
 };
 
-Golden readGolden(Scheme scheme) {
+Golden readGolden(const test::Ground& ground) {
   Golden golden;
-  std::ifstream file(goldenFile(scheme));
+  std::ifstream file(goldenFile(ground));
   std::string line;
   while (std::getline(file, line)) {
     if (line.rfind("generator ", 0) == 0) {
@@ -44,9 +44,10 @@ Golden readGolden(Scheme scheme) {
   return golden;
 }
 
-void writeGolden(Scheme scheme, const std::vector<std::string>& lines) {
-  std::ofstream file(goldenFile(scheme));
-  file << "# Tiles of the Moon: path and XXH3 of the GLB. Written by golden_tile_test, which says how.\n";
+void writeGolden(const test::Ground& ground, const std::vector<std::string>& lines) {
+  std::ofstream file(goldenFile(ground));
+  file << "# Tiles of " << fieldRow(ground.field).name
+       << " ground: path and XXH3 of the GLB. Written by golden_tile_test, which says how.\n";
   file << "generator " << kGeneratorVersion << '\n';
   for (const std::string& line : lines) file << line << '\n';
 }
@@ -86,16 +87,16 @@ std::string hashLine(const TileBuilder& builder, const FacePath& path) {
   return path.text() + " " + hash;
 }
 
-std::vector<std::string> hashLines(Scheme scheme) {
-  const TileBuilder builder(tiledBy(scheme, testMoon()), {}, SimdPath::Default);
+std::vector<std::string> hashLines(const test::Ground& ground) {
+  const TileBuilder builder(tiledBy(ground.scheme, testBody(ground.field, kMoonRadiusMeters)), {}, SimdPath::Default);
   std::vector<std::string> lines;
-  for (const FacePath& path : scheme == Scheme::Cube ? cubePaths() : icoPaths(builder.info().selection.maxLevel))
+  for (const FacePath& path : ground.scheme == Scheme::Cube ? cubePaths() : icoPaths(builder.info().selection.maxLevel))
     lines.push_back(hashLine(builder, path));
   return lines;
 }
 
-class GoldenTile : public testing::TestWithParam<Scheme> {};
-INSTANTIATE_TEST_SUITE_P(Schemes, GoldenTile, test::bothSchemes(), test::nameOfScheme);
+class GoldenTile : public testing::TestWithParam<test::Ground> {};
+INSTANTIATE_TEST_SUITE_P(Grounds, GoldenTile, test::allGrounds(), test::nameOfGround);
 
 TEST_P(GoldenTile, BytesAreTheOnesThisGeneratorVersionAlwaysMade) {
   const Golden golden = readGolden(GetParam());

@@ -1,5 +1,5 @@
 // Ground by midpoint displacement is what its definition says, for a tile as for an edge and a direction, at all levels
-// and over all edges of the solid; and its bounds hold against what finer levels really do.
+// and over all edges of the solid.
 
 #include "server/fields/midpoint_field.h"
 
@@ -8,7 +8,6 @@
 #include <map>
 #include <tuple>
 
-#include "common/tiling/ico_sphere.h"
 #include "common/tiling/tile_neighbours.h"
 #include "server/fields/midpoint_keys.h"
 #include "tests/unit/fields/midpoint_ground.h"
@@ -18,13 +17,6 @@ namespace {
 
 using namespace test;
 
-class MidpointGround : public testing::TestWithParam<Scheme> {
- protected:
-  Scheme scheme() const { return GetParam(); }
-  Body body_ = midpointBody(GetParam());
-  std::unique_ptr<const HeightField> field_ = makeHeightField(body_, bestSimdPath());
-  std::mt19937_64 random_{kGroundSeed};
-};
 INSTANTIATE_TEST_SUITE_P(Schemes, MidpointGround, bothSchemes(), nameOfScheme);
 
 /// The definition, word for word: a vertex of a whole face, by recursion up to the corners of the solid.
@@ -62,14 +54,6 @@ class Definition {
   MidpointDisplacement displacement_;
   std::map<std::tuple<int, int, std::int64_t, std::int64_t>, double> heights_;
 };
-
-/// The place on its whole face of a vertex of a tile's grid.
-std::array<std::int64_t, 2> placeOnFace(const FacePath& path, int cells, int i, int j) {
-  if (path.scheme() == Scheme::Cube)
-    return {std::int64_t{path.column()} * cells + i, std::int64_t{path.row()} * cells + j};
-  const FaceWeights weights = gridVertexWeights(triangleTile(path), cells, {i, j});
-  return {weights.y, weights.z};
-}
 
 TEST_P(MidpointGround, OfATileIsTheDefinitionsToTheBit) {
   Definition definition(body_);
@@ -140,32 +124,6 @@ TEST_P(MidpointGround, KeepsAVertexHeightAtAllFinerLevels) {
   }
 }
 
-std::vector<glm::dvec3> directionsOf(const FacePath& path, int cells) {
-  const auto count = static_cast<std::size_t>(triangleGridSize(cells));
-  std::vector<glm::dvec3> out;
-  if (path.scheme() == Scheme::Cube) {
-    for (int j = 0; j <= cells; ++j)
-      for (int i = 0; i <= cells; ++i) {
-        const auto [faceI, faceJ] = placeOnFace(path, cells, i, j);
-        out.push_back(cubeGridDirection(path.face(), path.level() + levelsOf(cells), static_cast<std::uint64_t>(faceI),
-                                        static_cast<std::uint64_t>(faceJ)));
-      }
-    return out;
-  }
-  std::vector<double> x(count), y(count), z(count);
-  icoGridDirections(kIcoMap, path, cells, {x, y, z});
-  for (std::size_t i = 0; i < count; ++i) out.emplace_back(x[i], y[i], z[i]);
-  return out;
-}
-
-/// Samples of single directions, of the surface of a grid level.
-SurfaceSamples sampledPoints(const HeightField& field, const Body& body, const std::vector<glm::dvec3>& points,
-                             int gridLevel) {
-  Directions directions;
-  for (const glm::dvec3& point : points) directions.add(point);
-  return evaluate(field, directions, 2.0 * cellMeters(body, gridLevel));
-}
-
 /// The direction of a vertex gives its height but for what rounding moves the direction along the ground: some 1e-14
 /// of the radius at a slope of at most 5, and so much less than a lattice step.
 TEST_P(MidpointGround, AtAVertexDirectionIsTheVertexHeight) {
@@ -180,99 +138,6 @@ TEST_P(MidpointGround, AtAVertexDirectionIsTheVertexHeight) {
   }
   std::printf("at most %.3g m from the vertex' own height\n", worst);
   EXPECT_LT(worst, 5 * 2e-14 * kMoonRadius);
-}
-
-/// Between vertices the surface of a level is no farther from that of any finer one than omittedAmplitudeMeters says.
-/// Directions are those of the finest vertices, where the two differ most.
-TEST_P(MidpointGround, LeavesOutNoMoreThanItSays) {
-  double closest = 0;
-  for (int coarse = 0; coarse <= 24; coarse += 4) {
-    for (const int finer : {1, 2, 5}) {
-      const int fine = coarse + finer;
-      const double bound = field_->omittedAmplitudeMeters(2 * cellMeters(body_, coarse), 2 * cellMeters(body_, fine));
-      for (int k = 0; k < 8; ++k) {
-        const FacePath path = randomTileOf(random_, scheme(), std::max(0, fine - 5));
-        const int cells = 1 << (fine - path.level());
-        const std::vector<glm::dvec3> points = directionsOf(path, cells);
-        const SurfaceSamples below = sampledPoints(*field_, body_, points, coarse);
-        const SurfaceSamples above = sampledTile(*field_, body_, path, cells);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-          const double apart = std::abs(above.heightMeters[i] - below.heightMeters[i]);
-          ASSERT_LE(apart, bound + 1e-7) << "of grid level " << coarse << " against " << fine;
-          if (finer == 1) closest = std::max(closest, apart / bound);
-        }
-      }
-    }
-  }
-  std::printf("one level leaves out up to %.4f of its bound\n", closest);
-  EXPECT_GT(closest, 0.99) << "a bound that nothing comes near holds nothing";
-}
-
-TEST_P(MidpointGround, HasNoInterpolationErrorOnItsOwnGridAndTheFinerLevelsElsewhere) {
-  const double cell = cellMeters(body_, 12);
-  EXPECT_EQ(field_->interpolationErrorMeters(2 * cell, cell), 0);
-  EXPECT_EQ(field_->interpolationErrorMeters(2 * cell, cell / 2), 0);
-  EXPECT_EQ(field_->interpolationErrorMeters(2 * cell, 4 * cell), field_->omittedAmplitudeMeters(8 * cell, 2 * cell));
-}
-
-TEST_P(MidpointGround, StaysWithinItsRange) {
-  const HeightRange range = field_->heightRange();
-  double lowest = 0, highest = 0;
-  for (int k = 0; k < 200; ++k) {
-    const SurfaceSamples samples = sampledTile(*field_, body_, randomTileOf(random_, scheme(), k % 4), 32);
-    lowest = std::min(lowest, *std::ranges::min_element(samples.heightMeters));
-    highest = std::max(highest, *std::ranges::max_element(samples.heightMeters));
-  }
-  std::printf("heights %.0f to %.0f m of %.0f to %.0f m\n", lowest, highest, range.minMeters, range.maxMeters);
-  EXPECT_GE(lowest, range.minMeters);
-  EXPECT_LE(highest, range.maxMeters);
-  EXPECT_GT(highest - lowest, 0.3 * (range.maxMeters - range.minMeters));
-}
-
-/// Of neighbours' heights, by whether the field's largest slopes and reliefs are ever exceeded, on bodies of all sizes
-/// at the largest amplitude that is allowed.
-TEST_P(MidpointGround, IsNoSteeperThanItSays) {
-  double steepest = 0, deepest = 0;
-  for (const double radius : {kMinRadiusMeters, kMoonRadius, kMaxRadiusMeters}) {
-    for (const double regularity : {0.0, 1.0, 3.0}) {
-      const Body body = midpointBody(scheme(), radius, regularity);
-      const auto field = makeHeightField(body, bestSimdPath());
-      const MidpointDisplacement displacement = displacementOf(body);
-      for (int level = 0; level <= maxLevel(radius, scheme()); ++level) {
-        const FacePath path = randomTileOf(random_, scheme(), level);
-        const SurfaceSamples samples = sampledTile(*field, body, path, 16);
-        const auto [low, high] = std::ranges::minmax_element(samples.heightMeters);
-        ASSERT_LE(*high - *low, displacement.largestReliefMeters(scheme(), level));
-        deepest = std::max(deepest, (*high - *low) / nominalTileWidthMeters(radius, level, scheme()));
-        const std::vector<glm::dvec3> at = directionsOf(path, 16);
-        for (std::size_t i = 0; i < 16; ++i) {
-          const double rise = std::abs(samples.heightMeters[i + 1] - samples.heightMeters[i]);
-          ASSERT_LE(rise, displacement.largestRiseMeters(level + 4));
-          const double slope = rise / (radius * glm::length(at[i + 1] - at[i]));
-          ASSERT_LE(slope, kSteepestSlope);
-          steepest = std::max(steepest, slope);
-        }
-      }
-    }
-  }
-  std::printf("steepest edge %.2f of %.1f, deepest tile %.2f widths\n", steepest, kSteepestSlope, deepest);
-}
-
-/// The mean of the gradients of the triangles around a vertex, by their areas, in space.
-glm::dvec3 gradientOfTriangles(const glm::dvec3& here, double height, const std::vector<glm::dvec3>& beside,
-                               const std::vector<double>& heights) {
-  glm::dvec3 sum(0.0);
-  double areas = 0;
-  for (std::size_t k = 0; k < beside.size(); ++k) {
-    const std::size_t next = (k + 1) % beside.size();
-    const glm::dvec3 a = (beside[k] - here) * kMoonRadius, b = (beside[next] - here) * kMoonRadius;
-    const glm::dvec3 normal = glm::cross(a, b);
-    const double area = glm::length(normal);
-    // The vector in the triangle's plane whose product with a and b is what the height rises by.
-    sum += glm::cross(b * (heights[k] - height) - a * (heights[next] - height), normal) / area;
-    areas += area;
-  }
-  return sum / areas;
 }
 
 using Bits = std::array<std::uint64_t, 3>;
@@ -323,6 +188,23 @@ TEST_P(MidpointGround, GivesSharedVerticesTheSameBitsInAllTiles) {
   EXPECT_GT(shared, tiles.size() * 9 * 3);
 }
 
+/// The mean of the gradients of the triangles around a vertex, by their areas, in space.
+glm::dvec3 gradientOfTriangles(const glm::dvec3& here, double height, const std::vector<glm::dvec3>& beside,
+                               const std::vector<double>& heights) {
+  glm::dvec3 sum(0.0);
+  double areas = 0;
+  for (std::size_t k = 0; k < beside.size(); ++k) {
+    const std::size_t next = (k + 1) % beside.size();
+    const glm::dvec3 a = (beside[k] - here) * kMoonRadius, b = (beside[next] - here) * kMoonRadius;
+    const glm::dvec3 normal = glm::cross(a, b);
+    const double area = glm::length(normal);
+    // The vector in the triangle's plane whose product with a and b is what the height rises by.
+    sum += glm::cross(b * (heights[k] - height) - a * (heights[next] - height), normal) / area;
+    areas += area;
+  }
+  return sum / areas;
+}
+
 /// Up to what the ground curves within a cell.
 TEST_P(MidpointGround, HasTheGradientOfItsMesh) {
   const bool ico = scheme() == Scheme::Ico;
@@ -360,29 +242,6 @@ TEST_P(MidpointGround, HasTheGradientOfItsMesh) {
   }
 }
 
-/// More regularity puts more of the ground's unevenness into small scales.
-TEST_P(MidpointGround, IsRougherInDetailTheLargerTheRegularity) {
-  double before = 0;
-  for (const double regularity : {0.0, 0.5, 1.0, 2.0, 3.0}) {
-    const Body body = midpointBody(scheme(), kMoonRadius, regularity);
-    const auto field = makeHeightField(body, bestSimdPath());
-    const auto slope = [&](int level) {
-      double squares = 0;
-      int count = 0;
-      for (int k = 0; k < 30; ++k) {
-        const SurfaceSamples samples = sampledTile(*field, body, randomTileOf(random_, scheme(), level), 16);
-        for (std::size_t i = 0; i < 16; ++i, ++count)
-          squares += std::pow((samples.heightMeters[i + 1] - samples.heightMeters[i]) / cellMeters(body, level + 4), 2);
-      }
-      return std::sqrt(squares / count);
-    };
-    const double coarse = slope(4), fine = slope(24), ratio = fine / coarse;
-    std::printf("regularity %.1f: slopes %.4f at grid level 8, %.4f at 28\n", regularity, coarse, fine);
-    EXPECT_GT(ratio, before);
-    before = ratio;
-  }
-}
-
 TEST(MidpointField, IsAnotherGroundForEverySetting) {
   const Body body = midpointBody(Scheme::Ico, kMoonRadius, 1, 0.5);
   const auto field = makeHeightField(body, bestSimdPath());
@@ -401,16 +260,6 @@ TEST(MidpointField, IsAnotherGroundForEverySetting) {
   other = body;
   other.fieldParameters["regularity"] = 1.01;
   differs(other);
-}
-
-TEST(MidpointField, RefusesAnAmplitudeBeyondTheLargest) {
-  for (const Scheme scheme : {Scheme::Cube, Scheme::Ico}) {
-    EXPECT_FALSE(checkHeightField(midpointBody(scheme)).has_error());
-    const Result<void> checked = checkHeightField(midpointBody(scheme, kMoonRadius, 1, 1.0001));
-    ASSERT_TRUE(checked.has_error());
-    EXPECT_EQ(checked.error().field, "midpoint.amplitude");
-    EXPECT_EQ(checked.error().kind, ErrorKind::TooLarge);
-  }
 }
 
 }  // namespace

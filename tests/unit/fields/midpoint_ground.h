@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <random>
 #include <vector>
 
+#include "common/tiling/ico_sphere.h"
 #include "server/fields/midpoint_field.h"
 #include "tests/support/both_schemes.h"
 #include "tests/support/ico_points.h"
@@ -67,5 +70,49 @@ inline SurfaceSamples sampledTile(const HeightField& field, const Body& body, co
   field.evaluate(batch, 2.0 * cellMeters(body, path.level() + levelsOf(cells)), samples);
   return samples;
 }
+
+/// The place on its whole face of a vertex of a tile's grid.
+inline std::array<std::int64_t, 2> placeOnFace(const FacePath& path, int cells, int i, int j) {
+  if (path.scheme() == Scheme::Cube)
+    return {std::int64_t{path.column()} * cells + i, std::int64_t{path.row()} * cells + j};
+  const FaceWeights weights = gridVertexWeights(triangleTile(path), cells, {i, j});
+  return {weights.y, weights.z};
+}
+
+/// The directions of all vertices of a tile's grid, by grid index.
+inline std::vector<glm::dvec3> directionsOf(const FacePath& path, int cells) {
+  const auto count = static_cast<std::size_t>(triangleGridSize(cells));
+  std::vector<glm::dvec3> out;
+  if (path.scheme() == Scheme::Cube) {
+    for (int j = 0; j <= cells; ++j)
+      for (int i = 0; i <= cells; ++i) {
+        const auto [faceI, faceJ] = placeOnFace(path, cells, i, j);
+        out.push_back(cubeGridDirection(path.face(), path.level() + levelsOf(cells), static_cast<std::uint64_t>(faceI),
+                                        static_cast<std::uint64_t>(faceJ)));
+      }
+    return out;
+  }
+  std::vector<double> x(count), y(count), z(count);
+  icoGridDirections(kIcoMap, path, cells, {x, y, z});
+  for (std::size_t i = 0; i < count; ++i) out.emplace_back(x[i], y[i], z[i]);
+  return out;
+}
+
+/// Samples of single directions, of the surface of a grid level.
+inline SurfaceSamples sampledPoints(const HeightField& field, const Body& body, const std::vector<glm::dvec3>& points,
+                                    int gridLevel) {
+  Directions directions;
+  for (const glm::dvec3& point : points) directions.add(point);
+  return evaluate(field, directions, 2.0 * cellMeters(body, gridLevel));
+}
+
+/// Suites over both schemes, on the largest ground that a body of the Moon's size may have.
+class MidpointGround : public testing::TestWithParam<Scheme> {
+ protected:
+  Scheme scheme() const { return GetParam(); }
+  Body body_ = midpointBody(GetParam());
+  std::unique_ptr<const HeightField> field_ = makeHeightField(body_, bestSimdPath());
+  std::mt19937_64 random_{kGroundSeed};
+};
 
 }  // namespace terrane::test
