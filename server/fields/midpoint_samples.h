@@ -16,11 +16,7 @@ struct Surface {
   double radiusMeters;
 };
 
-/// Heights of all vertices of the grid, by grid index, and their gradients. The gradient at a vertex is that of its
-/// triangles (of its neighbours' polygon, on the cube), by their areas: with neighbours p_k counter-clockwise,
-///   sum_k (h_k - h) (p_k+1 - p_k-1) x p / (R sum_k p . (p_k - p) x (p_k+1 - p)),
-/// exact where the height is linear. Summed from the neighbour with the least direction on, so that all tiles that have
-/// the vertex round alike.
+/// Heights of all vertices of the grid, by grid index, and their gradients (midpoint_gradient.h).
 void sampleGrid(const Surface& surface, const GridPlace& grid, SurfaceSamples& out);
 
 /// Heights along an edge.

@@ -94,4 +94,14 @@ class Subdivision {
   Places places_, coarse_;
 };
 
+/// Of all places: the cube's, from their keys. The icosahedron's came on the way.
+inline void addDirections(Subdivision<CubeTiling>& subdivision) {
+  Places& places = subdivision.places();
+  const int cells = places.cells(), gridLevel = subdivision.gridLevel();
+  subdivision.forEachPlace(cells, [&](int i, int j) {
+    places.at(i, j).direction = CubeTiling::directionOf(subdivision.tiling().key(cells, gridLevel, i, j), gridLevel);
+  });
+}
+inline void addDirections(Subdivision<IcoTiling<true>>&) noexcept {}
+
 }  // namespace terrane::midpoint

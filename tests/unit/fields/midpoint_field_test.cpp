@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "common/tiling/tile_neighbours.h"
+#include "server/fields/midpoint_gradient.h"
 #include "server/fields/midpoint_keys.h"
 #include "tests/unit/fields/midpoint_ground.h"
 
@@ -95,6 +96,25 @@ TEST_P(MidpointGround, AlongAnEdgeIsTheGrids) {
   }
 }
 
+/// A grid that is finer than the wavelength asked for has the coarser surface's heights.
+TEST_P(MidpointGround, AtALongerWavelengthIsTheCoarserSurface) {
+  for (int level = 3; level <= 27; level += 3) {
+    const FacePath path = randomTileOf(random_, scheme(), level);
+    const std::vector<glm::dvec3> points = directionsOf(path, 8);
+    for (const int gridLevel : {level - 2, level + 1}) {
+      const SurfaceSamples coarse = sampledPoints(*field_, body_, points, gridLevel);
+      const SurfaceSamples grid = sampledTile(*field_, body_, path, 8, GridPlace::kWholeGrid, gridLevel);
+      const SurfaceSamples edge = sampledTile(*field_, body_, path, 8, 0, gridLevel);
+      const SurfaceSamples fine = sampledTile(*field_, body_, path, 8);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        ASSERT_NEAR(grid.heightMeters[i], coarse.heightMeters[i], 2e-7) << path.text();
+      EXPECT_NE(grid.heightMeters, fine.heightMeters);
+      const auto end = static_cast<std::size_t>(scheme() == Scheme::Cube ? 0 : 8);  // where edge 0 begins
+      EXPECT_EQ(edge.heightMeters.front(), grid.heightMeters[end]);
+    }
+  }
+}
+
 /// A vertex that a tile has in common with its parent has one height in both.
 TEST_P(MidpointGround, KeepsAVertexHeightAtAllFinerLevels) {
   const int cells = 16;
@@ -141,6 +161,11 @@ TEST_P(MidpointGround, AtAVertexDirectionIsTheVertexHeight) {
 }
 
 using Bits = std::array<std::uint64_t, 3>;
+Bits bitsOf(const glm::dvec3& direction) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // one zero
+  return {bits(direction.x), bits(direction.y), bits(direction.z)};
+}
+
 struct VertexSample {
   double heightMeters;
   std::array<float, 3> gradient;
@@ -154,25 +179,28 @@ std::map<Bits, VertexSample> samplesByDirection(const HeightField& field, const 
   const std::vector<glm::dvec3> at = directionsOf(path, cells);
   std::map<Bits, VertexSample> out;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // one zero
-    out[{bits(at[i].x), bits(at[i].y), bits(at[i].z)}] = {
-        samples.heightMeters[i], {samples.gradientX[i], samples.gradientY[i], samples.gradientZ[i]}};
+    out[bitsOf(at[i])] = {samples.heightMeters[i], {samples.gradientX[i], samples.gradientY[i], samples.gradientZ[i]}};
   }
   return out;
 }
 
-/// Over all edges and corners of all faces, and of random tiles.
-TEST_P(MidpointGround, GivesSharedVerticesTheSameBitsInAllTiles) {
+/// At all corners of all faces, and at random.
+std::vector<FacePath> tilesOfAllKinds(Scheme scheme, std::mt19937_64& random) {
   std::vector<FacePath> tiles;
-  for (int face = 0; face < faceCount(scheme()); ++face)
-    for (int corner = 0; corner < edgeCount(scheme()); ++corner) {
-      FacePath path = FacePath::wholeFace(scheme(), face);
+  for (int face = 0; face < faceCount(scheme); ++face)
+    for (int corner = 0; corner < edgeCount(scheme); ++corner) {
+      FacePath path = FacePath::wholeFace(scheme, face);
       for (int level = 0; level <= 30; ++level) {
         if (level % 6 == 0) tiles.push_back(path);
         if (level < 30) path = path.child(corner);
       }
     }
-  for (int k = 0; k < 300; ++k) tiles.push_back(randomTileOf(random_, scheme(), k % 31));
+  for (int k = 0; k < 300; ++k) tiles.push_back(randomTileOf(random, scheme, k % 31));
+  return tiles;
+}
+
+TEST_P(MidpointGround, GivesSharedVerticesTheSameBitsInAllTiles) {
+  const std::vector<FacePath> tiles = tilesOfAllKinds(scheme(), random_);
   std::size_t shared = 0;
   for (const FacePath& path : tiles) {
     const auto own = samplesByDirection(*field_, body_, path);
@@ -186,6 +214,46 @@ TEST_P(MidpointGround, GivesSharedVerticesTheSameBitsInAllTiles) {
     }
   }
   EXPECT_GT(shared, tiles.size() * 9 * 3);
+}
+
+/// Gradients in double, of which the samples are the nearest floats: all but one in millions of these would agree
+/// whatever the order of the sums.
+template <class Tiling>
+std::map<Bits, std::array<double, 3>> gradientsByDirection(const Body& body, const FacePath& path) {
+  const int cells = 4;
+  const MidpointDisplacement displacement = displacementOf(body);
+  midpoint::Subdivision<Tiling> subdivision;
+  subdivision.start(displacement, MidpointDisplacement::kFinestGridLevel, path.face(), 1);
+  subdivision.enter(path);
+  while (subdivision.places().cells() < cells) subdivision.halveCells();
+  midpoint::addDirections(subdivision);
+  const std::vector<glm::dvec3> at = directionsOf(path, cells);
+  std::map<Bits, std::array<double, 3>> out;
+  std::size_t index = 0;
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= Tiling::lastI(cells, j, 0); ++i, ++index) {
+      EXPECT_EQ(subdivision.places().at(i, j).direction, at[index]) << "what the builder has";
+      const glm::dvec3 gradient = midpoint::gradientAt<Tiling>(subdivision.places(), i, j, body.radiusMeters);
+      out[bitsOf(at[index])] = {gradient.x, gradient.y, gradient.z};
+    }
+  }
+  return out;
+}
+
+TEST_P(MidpointGround, GivesSharedVerticesOneGradientToTheLastBitOfADouble) {
+  const auto gradients = [&](const FacePath& path) {
+    return scheme() == Scheme::Ico ? gradientsByDirection<midpoint::IcoTiling<true>>(body_, path)
+                                   : gradientsByDirection<midpoint::CubeTiling>(body_, path);
+  };
+  for (const FacePath& path : tilesOfAllKinds(scheme(), random_)) {
+    const auto own = gradients(path);
+    for (const FacePath& beside : tilesAround(path))
+      for (const auto& [direction, gradient] : gradients(beside)) {
+        const auto same = own.find(direction);
+        if (same == own.end()) continue;
+        ASSERT_EQ(same->second, gradient) << path.text() << " and " << beside.text();
+      }
+  }
 }
 
 /// The mean of the gradients of the triangles around a vertex, by their areas, in space.

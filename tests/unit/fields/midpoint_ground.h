@@ -54,9 +54,10 @@ inline int levelsOf(int cells) {
   return levels;
 }
 
-/// As the builder asks for a tile, or, with an edge, as the skirts ask. Needs no directions.
+/// As the builder asks for a tile, or, with an edge, as the skirts ask; or of the surface of another grid level. Needs
+/// no directions.
 inline SurfaceSamples sampledTile(const HeightField& field, const Body& body, const FacePath& path, int cells,
-                                  int edge = GridPlace::kWholeGrid) {
+                                  int edge = GridPlace::kWholeGrid, int gridLevel = -1) {
   const auto side = static_cast<std::size_t>(cells) + 1;
   SampleBatch batch;
   batch.rowLength = side;
@@ -67,7 +68,8 @@ inline SurfaceSamples sampledTile(const HeightField& field, const Body& body, co
   }
   batch.grid = GridPlace{path, cells, edge};
   SurfaceSamples samples;
-  field.evaluate(batch, 2.0 * cellMeters(body, path.level() + levelsOf(cells)), samples);
+  if (gridLevel < 0) gridLevel = path.level() + levelsOf(cells);
+  field.evaluate(batch, 2.0 * cellMeters(body, gridLevel), samples);
   return samples;
 }
 
