@@ -28,10 +28,11 @@ Result<void> MidpointField::check(const Body& body) {
   const double amplitude = parameter(body, "amplitude"), regularity = parameter(body, "regularity");
   const double most = mostAmplitudeMeters(body.radiusMeters, schemeOf(body), regularity);
   if (amplitude <= most) return {};
-  return makeError(ErrorKind::TooLarge, "midpoint.amplitude",
-                   fmt::format("{:.6g} m is too steep for a radius of {:.6g} m at regularity {:.6g}; allowed: at most "
-                               "{:.6g} m",
-                               amplitude, body.radiusMeters, regularity, most));
+  return makeError(
+      ErrorKind::TooLarge, "midpoint.amplitude",
+      fmt::format("{:.6g} m is too high or steep for a radius of {:.6g} m at regularity {:.6g}; allowed: at most "
+                  "{:.6g} m",
+                  amplitude, body.radiusMeters, regularity, most));
 }
 
 MidpointField::MidpointField(const Body& body)
@@ -43,7 +44,7 @@ MidpointField::MidpointField(const Body& body)
       displacement_(amplitude_, regularity_, seed_) {}
 
 int MidpointField::gridLevelOf(double minWavelengthMeters) const noexcept {
-  // Wavelengths are two cells and so the level's to a few ulps; half way between two levels nothing can go wrong.
+  // Those asked for are two cells of some level, but for a few ulps.
   int level = 0;
   double wavelength = 2.0 * nominalTileWidthMeters(radius_, 0, scheme_);
   while (level < MidpointDisplacement::kFinestGridLevel && 0.5 * wavelength * 1.000001 >= minWavelengthMeters) {

@@ -12,7 +12,9 @@
 // icosahedron alike. The place diagonally beyond a cube tile's corner would lie in the missing sector: no ring has it,
 // and no vertex of a ring lies between any that a ring lacks.
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <glm/vec3.hpp>
 
 #include "common/numerics/strict_math.h"
@@ -42,13 +44,12 @@ inline glm::dvec3 normalised(const glm::dvec3& p) noexcept {
   return glm::dvec3(p.x / length, p.y / length, p.z / length);
 }
 
-/// kDirections: of interest, and worked out on the way.
+/// kDirections: directions are wanted, and worked out on the way.
 template <bool kDirections>
 class IcoTiling {
  public:
   explicit IcoTiling(int face) noexcept : tile_{.face = face, .level = 0, .sign = 1, .base = FaceWeights(0)} {}
 
-  int level() const noexcept { return tile_.level; }
   void enterChild(int digit) noexcept {
     const bool centre = digit == 3;
     FaceWeights towards(centre ? 1 : 0);
@@ -103,11 +104,9 @@ class CubeTiling {
  public:
   explicit CubeTiling(int face) noexcept : face_(face) {}
 
-  int level() const noexcept { return level_; }
   void enterChild(int digit) noexcept {
     column_ = 2 * column_ + (digit & 1);
     row_ = 2 * row_ + (digit >> 1);
-    ++level_;
   }
   static ChildPlace childPlace(int digit) noexcept { return {digit & 1, digit >> 1, 1}; }
 
@@ -150,7 +149,7 @@ class CubeTiling {
   static constexpr std::array<GridVertex, kNeighbours> kBeside{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
  private:
-  int face_, level_ = 0;
+  int face_;
   std::int64_t column_ = 0, row_ = 0;
 };
 

@@ -103,7 +103,7 @@ TEST(MiddlesByAngles, AreHalfAWorldOffAtTheAntimeridianAndWrongAtThePoles) {
     if (level > 0) {
       EXPECT_GT(crossing, 0);
       EXPECT_GT(atWrap, 170 * kDegree);
-      EXPECT_GT(elsewhere, 0.01 * spacing) << "averages of angles are no middles anywhere but on circles through both";
+      EXPECT_GT(elsewhere, 0.01 * spacing) << "averages of angles are middles along meridians and the equator alone";
     }
     EXPECT_GT(atPole, 0.4 * spacing) << "no finer grid helps: the error is as large as the cells";
     EXPECT_LT(own, 1e-14 / std::min(1.0, spacing)) << "no error that is seen";
