@@ -1,6 +1,7 @@
 #pragma once
 // What an experiment of terrane-accuracy is: a question, a table whose rows say what accuracy costs in time, plots of
-// it and findings in plain words. An experiment is one file that registers itself; nothing else knows of it.
+// it, further tables where one cannot hold it all, and findings in plain words. An experiment is one file that
+// registers itself; nothing else knows of it.
 //
 // Everything but times is deterministic: equal settings give equal rows to the last digit. Keys of times begin with
 // "time", so that a reader of accuracy.json can leave them out.
@@ -29,11 +30,21 @@ struct Plot {
   bool joined = true;  ///< by lines, row after row; not where rows are choices and no steps of anything
 };
 
-struct Report {
+struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<Value>> rows;
   std::vector<Plot> plots;
+};
+
+/// One more table of an experiment.
+struct NamedTable : Table {
+  std::string key;    ///< in accuracy.json
+  std::string title;  ///< for people
+};
+
+struct Report : Table {
   std::vector<std::string> findings;  ///< plain words, with figures from the rows
+  std::vector<NamedTable> more;
 };
 
 struct Settings {

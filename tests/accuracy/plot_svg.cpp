@@ -25,9 +25,9 @@ std::optional<double> number(const Value& value) {
   return std::nullopt;
 }
 
-std::size_t columnAt(const Report& report, const std::string& key) {
-  const auto found = std::ranges::find(report.columns, key, &Column::key);
-  return static_cast<std::size_t>(found - report.columns.begin());
+std::size_t columnAt(const Table& table, const std::string& key) {
+  const auto found = std::ranges::find(table.columns, key, &Column::key);
+  return static_cast<std::size_t>(found - table.columns.begin());
 }
 
 /// Maps values to pixels; linear or by decades.
@@ -85,10 +85,10 @@ struct Lines {
   std::size_t leftOut = 0;
 };
 
-Lines linesOf(const Plot& plot, const Report& report) {
-  const std::size_t x = columnAt(report, plot.x), y = columnAt(report, plot.y), series = columnAt(report, plot.series);
+Lines linesOf(const Plot& plot, const Table& table) {
+  const std::size_t x = columnAt(table, plot.x), y = columnAt(table, plot.y), series = columnAt(table, plot.series);
   Lines result;
-  for (const auto& row : report.rows) {
+  for (const auto& row : table.rows) {
     const auto px = number(row[x]), py = number(row[y]);
     if (!px || !py || (plot.logX && *px <= 0) || (plot.logY && *py <= 0)) {
       ++result.leftOut;
@@ -143,8 +143,8 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-std::string plotSvg(const Plot& plot, const Report& report) {
-  const Lines all = linesOf(plot, report);
+std::string plotSvg(const Plot& plot, const Table& table) {
+  const Lines all = linesOf(plot, table);
   if (all.lines.empty()) return {};
   Axis x(plot.logX, kLeft, kWidth - kRight), y(plot.logY, kHeight - kBottom, kTop);
   for (const Line& line : all.lines) {
@@ -170,7 +170,7 @@ std::string plotSvg(const Plot& plot, const Report& report) {
     out += fmt::format("<circle cx='{}' cy='{}' r='4' fill='{}'/><text x='{}' y='{}'>{}</text>\n", kWidth - kRight + 16,
                        at - 4, color, kWidth - kRight + 26, at, escaped(all.lines[i].name));
   }
-  const auto title = [&](const std::string& key) { return escaped(report.columns[columnAt(report, key)].title); };
+  const auto title = [&](const std::string& key) { return escaped(table.columns[columnAt(table, key)].title); };
   out += fmt::format("<text x='{}' y='{}' text-anchor='middle' class='axis'>{}</text>\n", (kLeft + kWidth - kRight) / 2,
                      kHeight - 10, title(plot.x));
   out += fmt::format("<text transform='translate(16 {}) rotate(-90)' text-anchor='middle' class='axis'>{}</text>\n",

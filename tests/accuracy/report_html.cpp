@@ -22,15 +22,15 @@ figcaption { font-size: 13px; color: #444; } .grid { stroke: #ddd; } .axis { fon
 <h1>What accuracy costs</h1>
 )";
 
-std::string table(const Report& report) {
+std::string tableHtml(const Table& table) {
   std::string out = "<div class=\"scroll\"><table><tr>";
   const auto kind = [&](std::size_t c) {
-    return !report.rows.empty() && std::holds_alternative<std::string>(report.rows.front()[c]) ? " class=\"text\"" : "";
+    return !table.rows.empty() && std::holds_alternative<std::string>(table.rows.front()[c]) ? " class=\"text\"" : "";
   };
-  for (std::size_t c = 0; c < report.columns.size(); ++c)
-    out += fmt::format("<th{}>{}</th>", kind(c), escaped(report.columns[c].title));
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    out += fmt::format("<th{}>{}</th>", kind(c), escaped(table.columns[c].title));
   out += "</tr>\n";
-  for (const auto& row : report.rows) {
+  for (const auto& row : table.rows) {
     out += "<tr>";
     for (std::size_t c = 0; c < row.size(); ++c) out += fmt::format("<td{}>{}</td>", kind(c), escaped(shown(row[c])));
     out += "</tr>\n";
@@ -56,7 +56,12 @@ std::string htmlOf(const Settings& settings, const std::vector<Finished>& all) {
     for (const Plot& plot : finished.report.plots) out += plotSvg(plot, finished.report);
     for (const std::string& finding : finished.report.findings)
       out += "<p class=\"finding\">" + escaped(finding) + "</p>\n";
-    out += table(finished.report);
+    out += tableHtml(finished.report);
+    for (const NamedTable& table : finished.report.more) {
+      out += "<h3>" + escaped(table.title) + "</h3>\n";
+      for (const Plot& plot : table.plots) out += plotSvg(plot, table);
+      out += tableHtml(table);
+    }
   }
   return out + "</body></html>\n";
 }

@@ -19,6 +19,39 @@ std::string padded(const std::string& text, std::size_t width, bool right) {
   return right ? space + text : text + space;
 }
 
+std::string tableText(const Table& table) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    std::size_t width = widthOf(table.columns[c].title);
+    for (const auto& row : table.rows) width = std::max(width, widthOf(shown(row[c])));
+    widths.push_back(width);
+  }
+  std::string out;
+  const auto line = [&](const auto& cell) {
+    for (std::size_t c = 0; c < widths.size(); ++c) out += (c > 0 ? "  " : "") + cell(c);
+    out += '\n';
+  };
+  const auto isText = [&](std::size_t c) {
+    return !table.rows.empty() && std::holds_alternative<std::string>(table.rows.front()[c]);
+  };
+  line([&](std::size_t c) { return padded(table.columns[c].title, widths[c], !isText(c)); });
+  for (const auto& row : table.rows) line([&](std::size_t c) { return padded(shown(row[c]), widths[c], !isText(c)); });
+  return out;
+}
+
+/// Adds "columns" and "rows".
+void addTable(const Table& table, nlohmann::ordered_json& out) {
+  out["columns"] = nlohmann::ordered_json::object();
+  for (const Column& column : table.columns) out["columns"][column.key] = column.title;
+  auto& rows = out["rows"] = nlohmann::ordered_json::array();
+  for (const auto& row : table.rows) {
+    nlohmann::ordered_json entry;
+    for (std::size_t c = 0; c < row.size(); ++c)
+      std::visit([&](const auto& value) { entry[table.columns[c].key] = value; }, row[c]);
+    rows.push_back(std::move(entry));
+  }
+}
+
 }  // namespace
 
 std::string shown(const Value& value) {
@@ -34,23 +67,10 @@ std::string shown(const Value& value) {
 
 std::string textOf(const Finished& finished) {
   const Report& report = finished.report;
-  std::vector<std::size_t> widths;
-  for (std::size_t c = 0; c < report.columns.size(); ++c) {
-    std::size_t width = widthOf(report.columns[c].title);
-    for (const auto& row : report.rows) width = std::max(width, widthOf(shown(row[c])));
-    widths.push_back(width);
-  }
   std::string out = fmt::format("\n== {}: {}\n{}\n\n", finished.experiment.name, finished.experiment.title,
                                 finished.experiment.question);
-  const auto line = [&](const auto& cell) {
-    for (std::size_t c = 0; c < widths.size(); ++c) out += (c > 0 ? "  " : "") + cell(c);
-    out += '\n';
-  };
-  const auto isText = [&](std::size_t c) {
-    return !report.rows.empty() && std::holds_alternative<std::string>(report.rows.front()[c]);
-  };
-  line([&](std::size_t c) { return padded(report.columns[c].title, widths[c], !isText(c)); });
-  for (const auto& row : report.rows) line([&](std::size_t c) { return padded(shown(row[c]), widths[c], !isText(c)); });
+  out += tableText(report);
+  for (const NamedTable& table : report.more) out += fmt::format("\n{}:\n{}", table.title, tableText(table));
   for (const std::string& finding : report.findings) out += "\n* " + finding;
   return out + '\n';
 }
@@ -63,14 +83,11 @@ std::string jsonOf(const Settings& settings, const std::vector<Finished>& all) {
     nlohmann::ordered_json one;
     one["name"] = finished.experiment.name;
     one["title"] = finished.experiment.title;
-    one["columns"] = nlohmann::ordered_json::object();
-    for (const Column& column : finished.report.columns) one["columns"][column.key] = column.title;
-    auto& rows = one["rows"] = nlohmann::ordered_json::array();
-    for (const auto& row : finished.report.rows) {
-      nlohmann::ordered_json entry;
-      for (std::size_t c = 0; c < row.size(); ++c)
-        std::visit([&](const auto& value) { entry[finished.report.columns[c].key] = value; }, row[c]);
-      rows.push_back(std::move(entry));
+    addTable(finished.report, one);
+    for (const NamedTable& table : finished.report.more) {
+      auto& added = one["more"][table.key];
+      added["title"] = table.title;
+      addTable(table, added);
     }
     one["findings"] = finished.report.findings;
     list.push_back(std::move(one));

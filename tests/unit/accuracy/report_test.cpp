@@ -39,11 +39,20 @@ void expectFilled(const Experiment& experiment, const Report& report) {
   ASSERT_FALSE(report.findings.empty()) << experiment.name;
   // One that draws says so where there is nothing to draw on.
   EXPECT_NE(report.rows.empty(), !report.findings.front().starts_with("Not run: ")) << experiment.name;
-  for (const auto& row : report.rows) EXPECT_EQ(row.size(), report.columns.size()) << experiment.name;
-  for (const Plot& plot : report.plots) EXPECT_THAT(plotSvg(plot, report), HasSubstr("<circle")) << plot.title;
+  const auto expectWhole = [&](const Table& table) {
+    for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size()) << experiment.name;
+    for (const Plot& plot : table.plots) EXPECT_THAT(plotSvg(plot, table), HasSubstr("<circle")) << plot.title;
+  };
+  expectWhole(report);
+  std::set<std::string> keys;
+  for (const NamedTable& table : report.more) {
+    expectWhole(table);
+    EXPECT_FALSE(table.rows.empty()) << table.title;
+    EXPECT_TRUE(keys.insert(table.key).second) << table.key;
+  }
 }
 
-void expectSameErrors(const Experiment& experiment, const Report& first, const Report& second) {
+void expectSameErrors(const Experiment& experiment, const Table& first, const Table& second) {
   ASSERT_EQ(first.rows.size(), second.rows.size());
   for (std::size_t r = 0; r < first.rows.size(); ++r) {
     for (std::size_t c = 0; c < first.columns.size(); ++c) {
@@ -61,7 +70,10 @@ TEST(Accuracy, EveryExperimentIsNamedOnceFillsItsTableAndGivesTheSameErrorsToThe
     EXPECT_FALSE(experiment.question.empty()) << experiment.name;
     const Report first = runQuickly(experiment);
     expectFilled(experiment, first);
-    expectSameErrors(experiment, first, runQuickly(experiment));
+    const Report second = runQuickly(experiment);
+    expectSameErrors(experiment, first, second);
+    ASSERT_EQ(first.more.size(), second.more.size()) << experiment.name;
+    for (std::size_t i = 0; i < first.more.size(); ++i) expectSameErrors(experiment, first.more[i], second.more[i]);
   }
   EXPECT_GE(names.size(), 5u);
 }
@@ -72,6 +84,7 @@ Finished sample() {
   report.rows = {{std::string("a <b> & 'c'"), 0.1 + 0.2, std::int64_t{7}}, {std::string("é"), 0.0, std::int64_t{9}}};
   report.plots = {{"size over time", "timeNs", "size", "name"}};
   report.findings = {"it is < 1"};
+  report.more = {{{{{"part", "part"}}, {{std::string("<i>")}}, {}}, "parts", "Parts & pieces"}};
   return {{1, "sample", "A sample", "What?", nullptr}, report};
 }
 
@@ -81,12 +94,15 @@ TEST(Accuracy, JsonKeepsEveryDigitAndTellsTimesApart) {
   EXPECT_EQ(experiment.at("name"), "sample");
   EXPECT_EQ(experiment.at("rows").at(0).at("size").get<double>(), 0.1 + 0.2);
   EXPECT_EQ(experiment.at("rows").at(1).at("timeNs"), 9);
+  EXPECT_EQ(experiment.at("more").at("parts").at("title"), "Parts & pieces");
+  EXPECT_EQ(experiment.at("more").at("parts").at("rows").at(0).at("part"), "<i>");
 }
 
 TEST(Accuracy, ThePageNeedsNothingElseAndTakesNoTextForMarkup) {
   const std::string page = htmlOf({}, {sample()});
   for (const char* reference : {"src=", "http", "@import", "url("}) EXPECT_THAT(page, Not(HasSubstr(reference)));
-  EXPECT_THAT(page, Not(HasSubstr("<b>")));
+  for (const char* markup : {"<b>", "<i>"}) EXPECT_THAT(page, Not(HasSubstr(markup)));
+  EXPECT_THAT(page, HasSubstr("<h3>Parts &amp; pieces</h3>"));
   EXPECT_THAT(page, HasSubstr("a &lt;b&gt; &amp; &#39;c&#39;"));
   EXPECT_THAT(page, HasSubstr("1 points have no place")) << "0 on a logarithmic axis";
 }
