@@ -24,8 +24,8 @@ constexpr const char* kNotServed = "not served";
 constexpr double kAlike = 0.02;        ///< ratios this near to 1 are called the same
 constexpr double kLittleShare = 0.05;  ///< of a tile's build, that evenness may cost
 
-std::string ofPercent(double ratio) {
-  return fmt::format("{:.0f} % {}", 100 * std::fabs(ratio - 1), ratio < 1 ? "less" : "more");
+std::string ofPercent(double ratio, const char* below) {
+  return fmt::format("{:.0f} % {}", 100 * std::fabs(ratio - 1), ratio < 1 ? below : "more");
 }
 
 struct MapFigures {
@@ -41,7 +41,8 @@ NamedTable mapsTable(const Settings& settings, std::vector<MapFigures>& figures)
       nanosecondsPerItem(ways, settings.quick ? 20'000 : 200'000, settings.quick ? 7 : 25);
   NamedTable table;
   table.key = "maps";
-  table.title = fmt::format("What each map makes of a face, in cells of 1/{} of its edge", cells);
+  table.title = fmt::format("What each map makes of a face, in cells of 1/{} of its edge, as tiles of level {} are too",
+                            cells, settings.quick ? 8 : 10);
   table.columns = {{"map", "map"},
                    {"areaRatio", "area, largest / smallest"},
                    {"shortestEdge", "shortest edge, nominal widths"},
@@ -62,6 +63,10 @@ NamedTable mapsTable(const Settings& settings, std::vector<MapFigures>& figures)
   return table;
 }
 
+double bitsPerVertex(const Amounts& fetched) {
+  return 8 * static_cast<double>(fetched.dracoBytes) / static_cast<double>(fetched.vertices);
+}
+
 NamedTable costsTable(const AllTileCosts& costs, const SchemeOutcomes& all) {
   NamedTable table;
   table.key = "tiles";
@@ -75,10 +80,9 @@ NamedTable costsTable(const AllTileCosts& costs, const SchemeOutcomes& all) {
                    {"timeDirectionsNs", "of it the grid's directions"},
                    {"timeDirectionsShare", "their share"}};
   const auto add = [&](std::string_view map, const TileCosts& cost, const Amounts& fetched) {
-    const auto tiles = static_cast<double>(fetched.tiles), vertices = static_cast<double>(fetched.vertices);
-    table.rows.push_back({std::string(map), static_cast<std::int64_t>(cost.gridVertices),
-                          8 * static_cast<double>(fetched.dracoBytes) / vertices,
-                          static_cast<double>(fetched.bytes) / 1024 / tiles, cost.buildMs, cost.buildNsPerVertex(),
+    const double kibibytes = static_cast<double>(fetched.bytes) / 1024;
+    table.rows.push_back({std::string(map), static_cast<std::int64_t>(cost.gridVertices), bitsPerVertex(fetched),
+                          kibibytes / static_cast<double>(fetched.tiles), cost.buildMs, cost.buildNsPerVertex(),
                           cost.directionsNs, cost.directionsNs / cost.buildNsPerVertex()});
   };
   add(kCubeMapName, costs.cube, all.byError[0][0].fetched);
@@ -156,7 +160,7 @@ std::string bytesVerdict(const SchemeOutcomes& all, const std::vector<SchemeOutc
   return fmt::format(
       "the icosahedron takes {} bytes than the cube for the same mean error; the {} is the cheaper to "
       "send at {} of {} places",
-      ofPercent(*bytes), kSchemeNames[icoCheaper ? 1 : 0], agree, places.size());
+      ofPercent(*bytes, "fewer"), kSchemeNames[icoCheaper ? 1 : 0], agree, places.size());
 }
 
 std::string schemeVerdict(const SchemeOutcomes& all, const std::vector<SchemeOutcomes>& places,
@@ -165,13 +169,14 @@ std::string schemeVerdict(const SchemeOutcomes& all, const std::vector<SchemeOut
   const double server = costs.bisected.buildMs * static_cast<double>(all.byError[0][1].fetched.tiles) /
                         (costs.cube.buildMs * static_cast<double>(all.byError[0][0].fetched.tiles));
   const auto time = [](double ratio) {
-    return std::fabs(ratio - 1) < kAlike ? std::string("the same time") : ofPercent(ratio) + " time";
+    return std::fabs(ratio - 1) < kAlike ? std::string("the same time") : ofPercent(ratio, "less") + " time";
   };
   return fmt::format(
       "Cube or icosahedron? With the icosahedron's error set so that it draws the ground as well as the cube does, {}. "
-      "A vertex of a triangular tile takes {} to build (half as many share what a tile costs); "
-      "the server takes {} for all the tiles of these descents at {} px.",
-      bytesVerdict(all, places), time(vertex), time(server), kErrorPixels[0]);
+      "A vertex of a triangular tile takes {:.1f} bits against {:.1f}, and {} to build ({} vertices of a grid share "
+      "what a tile costs, on the cube {}); the server takes {} for all the tiles of these descents at {} px.",
+      bytesVerdict(all, places), bitsPerVertex(all.byError[0][1].fetched), bitsPerVertex(all.byError[0][0].fetched),
+      time(vertex), costs.bisected.gridVertices, costs.cube.gridVertices, time(server), kErrorPixels[0]);
 }
 
 std::string mapVerdict(const std::vector<MapFigures>& maps, const AllTileCosts& costs) {
@@ -209,12 +214,12 @@ Report run(const Settings& settings, Progress& progress) {
   const auto moon = makeHeightField(cube.builder().body(), bestSimdPath());
   std::vector<Place> places = descentPlaces(settings.seed, settings.quick ? 0 : 4);
   if (settings.quick) places.resize(2);
-  const int width = settings.quick ? 480 : 1280, height = settings.quick ? 270 : 720;
+  const int width = settings.quick ? 320 : 1280, height = settings.quick ? 180 : 720;
   SchemeOutcomes all;
   std::vector<SchemeOutcomes> byPlace;
   for (const Place& place : places) {
     const std::vector<Camera> cameras = descentCameras(place, *moon, cube.builder().body().radiusMeters,
-                                                       settings.quick ? 4 : kDescentCameras, width, height);
+                                                       settings.quick ? 3 : kDescentCameras, width, height);
     byPlace.push_back(compareDescents(cameras, *moon, {&cube, &ico}));
     all += byPlace.back();
     addRows(place.name, byPlace.back(), 0, report);

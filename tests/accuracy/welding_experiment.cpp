@@ -17,7 +17,6 @@
 namespace terrane::accuracy {
 namespace {
 
-constexpr int kTileCells = 64;
 constexpr std::array<const char*, 2> kTypes{"float", "double"}, kCopies{"alike", "a rounding apart"};
 
 struct Input {
@@ -28,6 +27,7 @@ struct Input {
 
 std::vector<Input> inputsOf(const Settings& settings) {
   std::vector<Input> inputs;
+  const int tileCells = settings.quick ? 32 : 64;
   for (const int level : settings.quick ? std::vector{3, 5} : std::vector{4, 6, 8})
     inputs.push_back({fmt::format("sphere, level {}", level), wholeSphere(level), true});
   for (const int level : settings.quick ? std::vector{12} : std::vector{12, 28}) {
@@ -35,7 +35,7 @@ std::vector<Input> inputsOf(const Settings& settings) {
         {{"a vertex", icosahedronVertex(0)}, {"a pole", glm::dvec3(0, 0, 1)}}};
     for (const auto& [place, direction] : places)
       inputs.push_back({fmt::format("tiles of level {} at {}", level, place),
-                        tileWithNeighbours(icoTileAt(kIcoMap, direction, level), kTileCells), false});
+                        tileWithNeighbours(icoTileAt(kIcoMap, direction, level), tileCells), false});
   }
   return inputs;
 }
@@ -127,7 +127,9 @@ Seen measureWays(const Input& input, const Prepared& prepared, int rounds, Repor
     const auto counts = [&](Copies copies) {
       return compare(kAllWays[way].weld(prepared, copies), prepared.truth, prepared.alike);
     };
-    seen.ways.push_back({way, counts(Copies::Alike), counts(Copies::Apart), 0});
+    const WeldCounts alike = counts(Copies::Alike);
+    // Keys know nothing of coordinates.
+    seen.ways.push_back({way, alike, kAllWays[way].exact ? alike : counts(Copies::Apart), 0});
     works.emplace_back([&prepared, way](std::size_t) {
       return static_cast<double>(kAllWays[way].weld(prepared, Copies::Alike).count);
     });
@@ -276,16 +278,17 @@ std::string hashFinding(const Seen& sphere) {
   return text;
 }
 
-/// "for all", "for none", or for which inputs there is an epsilon and for which there is none.
 std::string whereThereIsOne(const std::vector<Seen>& all, std::size_t type, std::size_t copies) {
-  std::string with, without;
+  std::array<std::string, 2> names;  // without, with
+  std::array<std::size_t, 2> counts{};
   for (const Seen& seen : all) {
-    std::string& list = seen.bounds[type][copies].possible() ? with : without;
-    list += (list.empty() ? "" : "; ") + seen.name;
+    const std::size_t is = seen.bounds[type][copies].possible() ? 1 : 0;
+    names[is] += (names[is].empty() ? "" : "; ") + seen.name;
+    ++counts[is];
   }
-  if (without.empty()) return "for all of these inputs";
-  if (with.empty()) return "for none of these inputs";
-  return fmt::format("for some ({}), not for others ({})", with, without);
+  if (counts[0] == 0) return "for all of these inputs";
+  if (counts[1] == 0) return "for none of these inputs";
+  return counts[1] <= counts[0] ? "only for " + names[1] : "for all but " + names[0];
 }
 
 std::string epsilonFinding(const std::vector<Seen>& all) {

@@ -72,15 +72,19 @@ Weld weldByKey64Radix(std::span<const Corner> corners) {
 
 Weld weldByKey64HashTable(std::span<const Corner> corners) {
   constexpr std::uint32_t kFree = ~std::uint32_t{0};
-  const std::size_t size = std::bit_ceil(corners.size());
-  std::vector<Keyed<std::uint64_t>> table(size, {0, kFree});
+  const std::size_t size = std::bit_ceil(corners.size() + 1);  // never full
+  std::vector<std::uint32_t> vertices(size, kFree);
+  std::vector<std::uint64_t> keyOfVertex;
   Weld weld{std::vector<std::uint32_t>(corners.size()), 0};
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const std::uint64_t key = key64Of(corners[i]);
     std::size_t at = static_cast<std::size_t>(key * 0x9E3779B97F4A7C15 >> (64 - std::countr_zero(size)));
-    while (table[at].corner != kFree && table[at].key != key) at = (at + 1) & (size - 1);
-    if (table[at].corner == kFree) table[at] = {key, weld.count++};
-    weld.vertexOfCorner[i] = table[at].corner;
+    while (vertices[at] != kFree && keyOfVertex[vertices[at]] != key) at = (at + 1) & (size - 1);
+    if (vertices[at] == kFree) {
+      vertices[at] = weld.count++;
+      keyOfVertex.push_back(key);
+    }
+    weld.vertexOfCorner[i] = vertices[at];
   }
   return weld;
 }
