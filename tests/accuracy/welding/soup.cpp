@@ -61,6 +61,7 @@ Soup soupOf(std::vector<FacePath> tiles, int cells) {
 
 Soup wholeSphere(int level) {
   std::vector<FacePath> faces;
+  faces.reserve(kIcosahedronFaces);
   for (int face = 0; face < kIcosahedronFaces; ++face) faces.push_back(FacePath::wholeFace(Scheme::Ico, face));
   return soupOf(std::move(faces), 1 << level);
 }

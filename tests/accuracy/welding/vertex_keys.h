@@ -30,7 +30,7 @@ inline std::uint64_t key64(const CellPoint& p) noexcept {
 /// All grid levels.
 struct Key128 {
   std::uint64_t high = 0, low = 0;
-  auto operator<=>(const Key128&) const = default;
+  auto operator<=>(const Key128&) const = default;  // NOLINT(modernize-use-nullptr): clang 14
 };
 inline Key128 key128(const CellPoint& p) noexcept { return {(std::uint64_t{p.cell} << 58) | p.first, p.second}; }
 

@@ -14,7 +14,7 @@ constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 struct Pair {
   std::uint32_t truth, found;
   std::uint32_t corner;
-  auto operator<=>(const Pair&) const = default;
+  auto operator<=>(const Pair&) const = default;  // NOLINT(modernize-use-nullptr): clang 14
 };
 
 /// Each true vertex with each vertex that it became part of, once.

@@ -57,7 +57,7 @@ void radixSort(std::vector<Keyed<std::uint64_t>>& keys) {
 
 struct Coordinates {
   double x, y, z;
-  auto operator<=>(const Coordinates&) const = default;
+  auto operator<=>(const Coordinates&) const = default;  // NOLINT(modernize-use-nullptr): clang 14
 };
 
 }  // namespace
