@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/scene/scene.h"
 #include "common/tiling/lattice.h"
 #include "proto/json_cursor.h"
 
@@ -66,6 +67,13 @@ BodyInfo readBody(const JsonCursor& at) {
   body.schemes = readSchemes(at.member("schemes"));
   body.cellsPerEdge = static_cast<int>(at.member("cellsPerEdge").integer(1, kMaxCellsPerEdge));
 
+  if (const auto position = at.optionalMember("positionMeters")) {
+    position->arraySize(3, 3);
+    for (int axis = 0; axis < 3; ++axis)
+      body.positionScene[axis] =
+          position->element(static_cast<std::size_t>(axis)).number(-kMaxPositionMeters, kMaxPositionMeters);
+  }
+
   SelectionBody& selection = body.selection;
   if (!body.schemes.empty()) selection.scheme = body.schemes.front();
   selection.radiusMeters = at.member("radiusMeters").number(kMinRadiusMeters, kMaxRadiusMeters);
@@ -121,7 +129,9 @@ nlohmann::ordered_json writeBody(const BodyInfo& body) {
   nlohmann::ordered_json schemes = nlohmann::ordered_json::array();
   for (const Scheme scheme : body.schemes) schemes.push_back(schemeName(scheme));
   const SelectionBody& selection = body.selection;
+  const glm::dvec3& position = body.positionScene;
   return {{"name", body.name},
+          {"positionMeters", nlohmann::ordered_json::array({position.x, position.y, position.z})},
           {"radiusMeters", selection.radiusMeters},
           {"schemes", std::move(schemes)},
           {"maxLevel", selection.maxLevel},

@@ -1,6 +1,7 @@
 #pragma once
 // scene.json: what a viewer must know before it asks for the first tile. Thread-safe.
 
+#include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@ struct BodyInfo {
   std::string revision;  ///< hash of what shapes the body's tile bytes
   std::vector<Scheme> schemes;
   int cellsPerEdge = 64;
+  /// Its centre in the scene's frame, metres, each coordinate within kMaxPositionMeters; the axes are the body frame's.
+  /// A document may leave it out: then it is the origin.
+  glm::dvec3 positionScene{0.0};
   SelectionBody selection;  ///< radius, levels, heights, geometric errors
 };
 

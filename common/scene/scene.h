@@ -2,6 +2,7 @@
 // A scene: bodies with their fields, and the effects it calls for. Read from a TOML file (server/scenes/scene_file.h).
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,6 +29,9 @@ std::span<const FieldRow> fieldTable() noexcept;
 const FieldRow& fieldRow(FieldKind kind) noexcept;
 std::optional<FieldKind> findField(std::string_view name) noexcept;
 
+/// No body's centre is farther than this from the scene's origin along any axis, in metres: 67 astronomical units.
+inline constexpr double kMaxPositionMeters = 1e13;
+
 struct Body {
   std::string name;  ///< [a-z0-9-]{1,32}: it is a part of URLs
   double radiusMeters = 0;
@@ -35,6 +39,8 @@ struct Body {
   FieldKind field = FieldKind::Sphere;
   ParameterValues fieldParameters;
   std::uint64_t seed = 0;
+  /// Its centre in the scene's frame, metres; the axes of all bodies are the scene's.
+  glm::dvec3 positionScene{0.0};
 };
 
 struct Scene {

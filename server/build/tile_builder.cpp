@@ -167,6 +167,7 @@ TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(s
   state.info.name = state.body.name;
   state.info.schemes = {state.scheme};
   state.info.cellsPerEdge = wire.cellsPerEdge;
+  state.info.positionScene = state.body.positionScene;
   SelectionBody& selection = state.info.selection;
   selection.scheme = state.scheme;
   selection.radiusMeters = radius;

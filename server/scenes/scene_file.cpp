@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "common/tiling/lattice.h"
 #include "server/fields/height_field.h"
+#include "server/scenes/body_places.h"
 #include "server/scenes/quantity_text.h"
 #include "server/scenes/scene_text.h"
-#include "server/scenes/shipped_scenes.h"
 
 // The parser states as preconditions what broken files break ("[." does): an abort as assertions, undefined as the
 // assumptions that NDEBUG makes of them. As neither, the code behind them reports an error like any other.
@@ -182,12 +180,13 @@ class SceneReader {
           fail(table.get("name") ? table.get("name")->source() : table.source(), fmt::format("body[{}].name", i),
                fmt::format("\"{}\" is the name of body[{}] already; allowed: names that differ", bodies[i].name, k));
     }
+    if (!error_) checkPlaces(*array, bodies);
   }
 
   Body readBody(const toml::table& table, const std::string& path) {
     Body body;
     const std::vector<std::string_view> fields = namesOf(fieldTable());
-    std::vector<std::string_view> keys{"name", "radius", "schemes", "seed", "field"};
+    std::vector<std::string_view> keys{"name", "radius", "position", "schemes", "seed", "field"};
     for (const FieldRow& row : fieldTable())
       if (!row.parameters.empty()) keys.push_back(row.name);
     checkKeys(table, path, keys);
@@ -195,10 +194,37 @@ class SceneReader {
     static constexpr ParameterSpec kRadius{"radius", Quantity::Length, kMinRadiusMeters, kMaxRadiusMeters, 0, ""};
     if (const toml::node* node = required(table, path, "radius", "a length with a unit: mm, m, km"))
       body.radiusMeters = readValue(*node, join(path, "radius"), kRadius);
+    readPosition(table, path, body);
     readSchemes(table, path, body);
     readSeed(table, path, body);
     readField(table, path, fields, body);
     return body;
+  }
+
+  void readPosition(const toml::table& table, const std::string& path, Body& body) {
+    const toml::node* node = table.get("position");
+    if (!node) return;
+    static constexpr std::string_view kExpected = R"(three lengths, as in ["384400 km", "0 km", "0 km"])";
+    static constexpr ParameterSpec kCoordinate{"", Quantity::Length, -kMaxPositionMeters, kMaxPositionMeters, 0, ""};
+    const toml::array* array = node->as_array();
+    if (!array) return wrongType(*node, join(path, "position"), kExpected);
+    if (array->size() != 3)
+      return fail(node->source(), join(path, "position"),
+                  fmt::format("has {} coordinates; expected {}", array->size(), kExpected));
+    for (int axis = 0; axis < 3; ++axis)
+      body.positionScene[axis] = readValue(*array->get(static_cast<std::size_t>(axis)),
+                                           fmt::format("{}.position[{}]", path, axis), kCoordinate);
+  }
+
+  void checkPlaces(const toml::array& tables, std::span<const Body> bodies) {
+    const std::optional<TouchingBodies> touching = findTouchingBodies(bodies);
+    if (!touching) return;
+    const toml::table& table = *tables.get(touching->second)->as_table();
+    const toml::node* node = table.get("position");
+    fail(node ? node->source() : table.source(), fmt::format("body[{}].position", touching->second),
+         fmt::format("{} from the centre of body[{}] \"{}\"; allowed: more than {}, where their ground cannot touch",
+                     formatQuantity(touching->distanceMeters, Quantity::Length), touching->first,
+                     bodies[touching->first].name, formatQuantity(touching->neededMeters, Quantity::Length)));
   }
 
   void readSchemes(const toml::table& table, const std::string& path, Body& body) {
@@ -367,39 +393,6 @@ Result<Scene> parseScene(std::string_view toml, std::string_view fileName) try {
   return SceneReader(fileName).read(parsed.table());
 } catch (const std::exception& error) {
   return makeError(ErrorKind::Internal, "", fmt::format("{}: {}", fileName, error.what()));
-}
-
-Result<Scene> loadSceneFile(const std::filesystem::path& file) try {
-  const std::string name = file.string();
-  std::error_code failure;
-  const std::filesystem::file_status status = std::filesystem::status(file, failure);
-  if (!std::filesystem::exists(status)) return makeError(ErrorKind::NotFound, name, name + ": no such file");
-  if (!std::filesystem::is_regular_file(status)) return makeError(ErrorKind::Io, name, name + ": not a regular file");
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(kMaxSceneFileBytes + 1, '\0');
-  if (!stream || (!stream.read(text.data(), static_cast<std::streamsize>(text.size())) && !stream.eof()))
-    return makeError(ErrorKind::Io, name, name + ": cannot be read");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return parseScene(text, name);
-} catch (const std::exception& error) {
-  return makeError(ErrorKind::Io, "--scene", error.what());
-}
-
-Result<Scene> loadScene(std::string_view nameOrFile) {
-  for (const ShippedScene& scene : shippedSceneTexts())
-    if (scene.name == nameOrFile) return parseScene(scene.toml, fmt::format("{}.toml", scene.name));
-  if (nameOrFile.ends_with(".toml")) return loadSceneFile(std::filesystem::path(nameOrFile));
-  const std::vector<std::string_view> names = namesOf(shippedSceneTexts());
-  const std::string_view near = nearestWord(nameOrFile, names);
-  return makeError(ErrorKind::NotFound, "--scene",
-                   fmt::format("no scene {}{}; allowed: {}, or a path that ends in .toml", quotedForMessage(nameOrFile),
-                               near.empty() ? "" : fmt::format(", did you mean \"{}\"?", near), listOf(names)));
-}
-
-std::vector<std::string> shippedScenes() {
-  std::vector<std::string> names;
-  for (const ShippedScene& scene : shippedSceneTexts()) names.emplace_back(scene.name);
-  return names;
 }
 
 }  // namespace terrane

@@ -10,6 +10,7 @@
 //   schemes = ["cube"]          # or ["ico"]: the tiling, one a body
 //   seed = 1969
 //   field = "lunar"
+//   position = ["0 km", "0 km", "0 km"]  # of its centre in the scene, whose axes are the body's; this is the default
 //   [body.lunar]                # the field's settings, all with defaults
 //   [effects.sun]
 //   longitude = "40 deg"
@@ -31,7 +32,8 @@ inline constexpr std::size_t kMaxSceneBodies = 64;
 
 /// Errors: one line, complete in message: "moon.toml:4: body[0].radius: "17 parsec" has an unknown unit; allowed: mm,
 /// m, km"; field is the key path ("body[0].radius"), empty for what is no TOML. Kinds: InvalidArgument, Malformed
-/// (syntax, encoding), TooLarge (ground too steep for its body, too), Unsupported (two schemes).
+/// (syntax, encoding), TooLarge (ground too steep for its body, too), Unsupported (two schemes). Bodies whose ground might
+/// touch are refused at the position of the later one.
 Result<Scene> parseScene(std::string_view toml, std::string_view fileName);
 /// Errors also: Io, naming the file in message and field.
 Result<Scene> loadSceneFile(const std::filesystem::path& file);

@@ -137,7 +137,7 @@ TEST(ServerProgram, EveryWrongFlagIsOneLineThatNamesItAndExitsWithTwo) {
       {{"--scene="}, "--scene: "},
       {{"--listen", ""}, "--listen: "},
       {{"--listen", "127.0.0.1"}, "--listen: "},
-      {{"--scene", "mars"}, "moon, smooth"},
+      {{"--scene", "mars"}, "moon, planets, smooth"},
       {{"--scene", "/nonexistent.toml"}, "/nonexistent.toml"},
       {{"--scene", "smooth", "--memory-cache", "12 parsecs"}, "--memory-cache"},
       {{"--scene", "smooth", "--memory-cache", "99999999999999999999MiB"}, "--memory-cache"},

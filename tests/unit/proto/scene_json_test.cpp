@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "common/scene/scene.h"
 #include "common/tiling/lattice.h"
 
 namespace terrane::test {
@@ -18,6 +19,7 @@ BodyInfo moon() {
   body.name = "moon";
   body.revision = "0123456789abcdef";
   body.schemes = {Scheme::Cube};
+  body.positionScene = {384400000.125, -1e-3, kMaxPositionMeters};
   body.selection.radiusMeters = 1737400;
   body.selection.maxLevel = 3;
   body.selection.heights = {-9123.456789012345, 10786.100000000001};
@@ -62,6 +64,7 @@ TEST(SceneJson, ReadsBackWhatItWrote) {
   EXPECT_EQ(b.revision, a.revision);
   EXPECT_EQ(b.schemes, a.schemes);
   EXPECT_EQ(b.cellsPerEdge, a.cellsPerEdge);
+  EXPECT_EQ(b.positionScene, a.positionScene);
   EXPECT_EQ(b.selection.scheme, Scheme::Cube);
   EXPECT_EQ(b.selection.radiusMeters, a.selection.radiusMeters);
   EXPECT_EQ(b.selection.maxLevel, a.selection.maxLevel);
@@ -91,6 +94,14 @@ TEST(SceneJson, KeepsEveryBitOfADouble) {
     EXPECT_EQ(read->bodies[0].selection.heights.minMeters, body.heights.minMeters);
     EXPECT_EQ(read->bodies[0].selection.geometricErrorMeters, body.geometricErrorMeters);
   }
+}
+
+TEST(SceneJson, ADocumentOlderThanPositionsHasItsBodiesAtTheOrigin) {
+  nlohmann::json json = document();
+  json["bodies"][0].erase("positionMeters");
+  const auto read = readSceneJson(json.dump());
+  ASSERT_TRUE(read.has_value()) << read.error().text();
+  EXPECT_EQ(read->bodies[0].positionScene, glm::dvec3(0.0));
 }
 
 TEST(SceneJson, AnOldViewerOpensANewerServersScene) {
@@ -130,6 +141,10 @@ TEST(SceneJson, RefusalsNameTheKey) {
       {"/bodies/0/radiusMeters", -1737400, "bodies[0].radiusMeters"},
       {"/bodies/0/radiusMeters", nullptr, "bodies[0].radiusMeters"},
       {"/bodies/0/radiusMeters", "1737400", "bodies[0].radiusMeters"},
+      {"/bodies/0/positionMeters", 5, "bodies[0].positionMeters"},
+      {"/bodies/0/positionMeters", json::array({0, 0}), "bodies[0].positionMeters"},
+      {"/bodies/0/positionMeters/1", "0 km", "bodies[0].positionMeters[1]"},
+      {"/bodies/0/positionMeters/2", 1.1e13, "bodies[0].positionMeters[2]"},
       {"/bodies/0/maxLevel", 31, "bodies[0].maxLevel"},
       {"/bodies/0/maxLevel", -1, "bodies[0].maxLevel"},
       {"/bodies/0/maxLevel", 2.5, "bodies[0].maxLevel"},
@@ -156,6 +171,7 @@ TEST(SceneJson, RefusalsNameTheKey) {
   EXPECT_EQ(refusedKey(twice), "bodies[1].name");
   const json body = document()["bodies"][0];
   for (const auto& [key, value] : body.items()) {
+    if (key == "positionMeters") continue;  // older documents have none
     json missing = document();
     missing["bodies"][0].erase(key);
     EXPECT_EQ(refusedKey(missing), "bodies[0]." + key);

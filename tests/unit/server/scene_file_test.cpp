@@ -1,5 +1,6 @@
 #include "server/scenes/scene_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <sstream>
 
 #include "common/tiling/lattice.h"
+#include "server/fields/height_field.h"
 
 namespace terrane {
 namespace {
@@ -33,6 +35,7 @@ roughness = 0.5
 name = "ball-2"
 radius = "250 m"
 field = "sphere"
+position = ["-384400 km", "12.5 m", "1e10 km"]
 [effects.sun]
 longitude = "40 deg"
 latitude = "-0.5 rad"
@@ -64,6 +67,8 @@ TEST(SceneFile, ReadsEveryValueOfASceneInMetresAndRadians) {
   EXPECT_EQ(second.field, FieldKind::Sphere);
   EXPECT_EQ(second.radiusMeters, kMinRadiusMeters);
   EXPECT_EQ(second.seed, 0u);
+  EXPECT_EQ(ball.positionScene, glm::dvec3(0.0)) << "the scene's origin where none is written";
+  EXPECT_EQ(second.positionScene, glm::dvec3(-384400000, 12.5, kMaxPositionMeters));
   EXPECT_THAT(second.schemes, testing::ElementsAre(Scheme::Cube));
   ASSERT_EQ(scene->effects.size(), 1u);
   EXPECT_EQ(scene->effects[0].kind, EffectKind::Sun);
@@ -99,7 +104,7 @@ TEST(SceneFile, RangesAreInclusiveAtBothEnds) {
 }
 
 TEST(SceneFile, EveryShippedSceneIsValidAndBearsItsFilesName) {
-  EXPECT_THAT(shippedScenes(), testing::IsSupersetOf({"moon", "moon-ico", "smooth"}));
+  EXPECT_THAT(shippedScenes(), testing::IsSupersetOf({"moon", "moon-ico", "planets", "smooth"}));
   for (const std::string& name : shippedScenes()) {
     const Result<Scene> scene = loadScene(name);
     ASSERT_TRUE(scene) << scene.error().text();
@@ -120,7 +125,7 @@ TEST(SceneFile, AnUnknownSceneNameListsTheShippedOnes) {
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().field, "--scene");
   EXPECT_THAT(scene.error().message, HasSubstr("did you mean \"moon\"?"));
-  EXPECT_THAT(scene.error().message, HasSubstr("moon-ico, moon, smooth"));
+  EXPECT_THAT(scene.error().message, HasSubstr("moon-ico, moon, planets, smooth"));
 }
 
 TEST(SceneFile, AMissingFileADirectoryAndADeviceAreErrors) {
@@ -237,6 +242,27 @@ TEST(SceneFile, WhatTheLibraryTakesForImpossibleIsASyntaxError) {
     ASSERT_FALSE(scene) << text;
     EXPECT_EQ(scene.error().kind, ErrorKind::Malformed) << text;
   }
+}
+
+// What a body's ground can reach counts, not its reference sphere; farther apart than that, a body may be anywhere.
+TEST(SceneFile, BodiesMayStandAsCloseAsTheirHighestGroundLets) {
+  const auto apart = [](double meters) {
+    return parseScene(fmt::format("name = \"t\"\n[[body]]\nname = \"a\"\nradius = \"10 km\"\nfield = \"lunar\"\n"
+                                  "[[body]]\nname = \"b\"\nradius = \"5 km\"\nfield = \"sphere\"\n"
+                                  "position = [\"0 m\", \"{} m\", \"0 m\"]\n",
+                                  meters),
+                      "t.toml");
+  };
+  Body lunar;
+  lunar.radiusMeters = 10'000;
+  lunar.field = FieldKind::Lunar;
+  lunar.fieldParameters = defaultValues(fieldRow(FieldKind::Lunar).parameters);
+  const double highest = makeHeightField(lunar, SimdPath::Default)->heightRange().maxMeters;
+  ASSERT_GT(highest, 1);
+  EXPECT_TRUE(apart(15'001 + highest));
+  const Result<Scene> touching = apart(14'999 + highest);
+  ASSERT_FALSE(touching) << "the spheres are clear of each other, the hills are not";
+  EXPECT_EQ(touching.error().field, "body[1].position");
 }
 
 TEST(SceneFile, TooManyBodiesAreRefused) {
