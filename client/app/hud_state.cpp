@@ -27,6 +27,7 @@ HudState hudStateOf(const ViewSession& session, const FrameTimes& times, const D
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
   HudState state;
   const auto height = session.heightAboveGround();
+  if (session.bodies().size() > 1) state.body = session.body().name;
   state.altitudeMeters = session.pose().altitudeMeters;
   state.groundKnown = height.has_value();
   state.groundMeters = height.value_or(0);
@@ -75,6 +76,7 @@ void describeSession(const ViewSession& session, const ViewOptions& options, Run
   statistics.server = options.serverUrl;
   statistics.scene = session.scene().name;
   statistics.body = session.body().name;
+  statistics.bodies = session.bodies();
   for (const EffectCall& effect : session.effects()) statistics.effects.emplace_back(effectRow(effect.kind).name);
   statistics.constructed = constructionCounts();
 }

@@ -14,6 +14,7 @@
 #include "client/app/hud_state.h"
 #include "client/app/run_statistics.h"
 #include "client/app/view_session.h"
+#include "client/app/whole_body_pose.h"
 #include "client/app/window_input.h"
 #include "client/controls/camera_controls.h"
 #include "client/controls/frame_budget.h"
@@ -169,7 +170,8 @@ ViewSession::View InteractiveRun::viewNow(double seconds) {
     return view;
   }
   const ControlView shape{session_->body().selection.radiusMeters, options_.verticalFieldOfView, view.widthPixels,
-                          view.heightPixels};
+                          view.heightPixels, session_->largestRadiusMeters()};
+  if (session_->anchorNearest()) controls_.moveOver(session_->pose());
   view.pose = controls_.advance(input, shape,
                                 [this](const glm::dvec3& direction) { return session_->groundHeight(direction); });
   return view;
@@ -215,6 +217,7 @@ void InteractiveRun::obey(ViewCommand command) {
     case ViewCommand::Home:
       flight_.reset();
       handsOn_ = false;
+      session_->anchorFirst();
       controls_.goHome();
       break;
     case ViewCommand::NextPlacement:
@@ -278,7 +281,7 @@ void InteractiveRun::drawFrame(Clock::time_point begin) {
     statistics_.skirtPixels += count.skirt;
     ++statistics_.framesCounted;
   }
-  if (!options_.recordFile.empty()) recorder_.add(secondsBetween(start_, begin), session_->pose());
+  if (!options_.recordFile.empty()) recorder_.add(secondsBetween(start_, begin), session_->poseOverFirst());
   drawOverlay();
   window_.swap();
 }

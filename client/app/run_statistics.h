@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/app/body_status.h"
 #include "client/render/tile_renderer.h"
 #include "client/tiles/tile_stream.h"
 #include "common/result.h"
@@ -59,7 +60,9 @@ struct RunStatistics {
   ViewPose pose;                        ///< of the last frame
   double heightAboveGroundMeters = -1;  ///< -1: not known
   int widthPixels = 0, heightPixels = 0;
-  std::string server, scene, body;
+  std::string server, scene;
+  std::string body;                                      ///< the anchor, which the camera is relative to
+  std::vector<BodyStatus> bodies;                        ///< in the last frame
   std::vector<std::string> effects;                      ///< that the scene names, less those left out
   std::vector<std::pair<std::string, int>> constructed;  ///< by name
   std::vector<PointStatistics> points;

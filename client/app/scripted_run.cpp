@@ -10,6 +10,7 @@
 #include "client/app/hud_state.h"
 #include "client/app/run_statistics.h"
 #include "client/app/view_session.h"
+#include "client/app/whole_body_pose.h"
 #include "client/controls/frame_budget.h"
 #include "client/gl/image.h"
 #include "client/render/hud.h"

@@ -57,6 +57,12 @@ std::string pointJson(const PointStatistics& p) {
       p.uncoveredPixels, p.skirtPixels, p.capture.empty() ? "null" : quoted(p.capture));
 }
 
+std::string bodyJson(const BodyStatus& b) {
+  return fmt::format(
+      R"({{"name": {}, "altitudeMeters": {}, "diameterPixels": {}, "tilesDrawn": {}, "tilesResident": {}}})",
+      quoted(b.name), number(b.altitudeMeters), number(b.diameterPixels), b.tilesDrawn, b.tilesResident);
+}
+
 class Object {
  public:
   void add(std::string_view key, const std::string& json) {
@@ -119,6 +125,7 @@ std::string statisticsJson(const RunStatistics& s) {
   object.add("server", quoted(s.server));
   object.add("scene", quoted(s.scene));
   object.add("body", quoted(s.body));
+  object.add("bodies", array(s.bodies, bodyJson, "[\n    ", "]", ",\n    "));
   object.add("linkMessage", quoted(s.stream.message));
   object.add("effects", array(s.effects, quoted, "[", "]", ", "));
   object.add("constructed",

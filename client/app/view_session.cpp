@@ -6,18 +6,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <numbers>
+#include <glm/geometric.hpp>
 #include <thread>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include "client/app/body_view.h"
 #include "client/controls/camera_controls.h"
 #include "common/command_line.h"
-#include "common/tiling/tile_at.h"
-#include "common/view/level_of_detail.h"
-#include "common/view/level_transitions.h"
+#include "common/view/body_frames.h"
 
 namespace terrane {
 namespace {
@@ -26,10 +24,12 @@ using Clock = std::chrono::steady_clock;
 
 // Small enough that one batch does not overrun a frame's time by much.
 constexpr std::size_t kUploadBatchBytes = 512u << 10;
-constexpr int kLevelsAheadOfGround = 2;
 /// From higher up other tiles are wanted. That begins to change what is drawn and not where its surface is, so once is
 /// enough, but for a tile that comes into view under the camera.
 constexpr int kMostRises = 3;
+/// Another body becomes the anchor once the camera is so much nearer to it: one that hovers half way between two does
+/// not change over and over.
+constexpr double kNearerToAnchor = 0.8;
 
 /// Decoding many tiles leaves tens of megabytes free in the heap; nobody needs them while the view stands still.
 void returnFreedMemory() {
@@ -40,19 +40,34 @@ void returnFreedMemory() {
 
 void warn(const std::string& text) { complain("terrane-view", "warning: " + text); }
 
+/// The chosen body first, then the others that keep clear of all before them: those of a scene that gives them no
+/// places are looked at one by one.
+std::vector<std::size_t> bodiesInView(const SceneInfo& scene, std::size_t chosen) {
+  std::vector<std::size_t> inView{chosen};
+  const auto outer = [](const SelectionBody& body) {
+    return body.radiusMeters + std::max(0.0, body.heights.maxMeters);
+  };
+  for (std::size_t candidate = 0; candidate < scene.bodies.size(); ++candidate) {
+    const BodyInfo& body = scene.bodies[candidate];
+    const bool clear = std::ranges::all_of(inView, [&](std::size_t other) {
+      const BodyInfo& there = scene.bodies[other];
+      return glm::length(body.positionScene - there.positionScene) > outer(body.selection) + outer(there.selection);
+    });
+    if (clear) inView.push_back(candidate);
+  }
+  return inView;
+}
+
 }  // namespace
 
 struct ViewSession::State {
   ViewOptions options;
   std::unique_ptr<TileStream> stream;
   std::unique_ptr<TileRenderer> renderer;
+  std::vector<BodyView> views;  ///< as the stream has selected them
+  std::size_t anchor = 0;       ///< whose frame camera and pose are in
   Camera camera;
   ViewPose pose;
-  TileSelection selection;
-  LevelTransitions transitions;
-  bool overTime = true;  ///< what transitions was made for
-  std::vector<DrawnTile> drawn;
-  std::size_t missing = 0, wantedCount = 0;
   bool firstUpdate = true, wasSettled = false;
   std::unordered_map<FacePath, TilePtr> kept;  ///< only to explain: otherwise a mesh is dropped once it is on the GPU
 
@@ -61,14 +76,15 @@ struct ViewSession::State {
 
   void nameUnknownEffects();
   bool takeArrivals(const UploadBudget& budget);
+  BodyView& anchorView() { return views[anchor]; }
+  const BodyView& anchorView() const { return views[anchor]; }
   ViewPose resolved(const View& view) const;
-  double altitudeAboveDrawn(const ViewPose& viewed) const;
-  std::vector<WantedTile> groundChain(double allowedPixels) const;
-  bool requestTiles(double allowedPixels, const std::vector<WantedTile>& lower, bool groundFirst, bool ahead);
-  void addBesidePicture(double allowedPixels, std::unordered_set<FacePath>& known,
-                        std::vector<WantedTile>& wanted) const;
-  void changeLevelsOverTime(bool wanted);
-  bool chooseTiles(const Camera& from, double allowedPixels, double seconds);
+  Camera cameraOver(const BodyView& view) const;
+  bool chooseOfOthers(double allowedPixels, double seconds);
+  void changeAnchor(std::size_t to);
+  UpdateReport requestOf(const View& view, double allowedPixels, bool arrived, bool still);
+  void evict();
+  std::vector<BodyPicture> pictures() const;
 };
 
 ViewSession::ViewSession(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -119,7 +135,9 @@ Result<bool> ViewSession::ready() {
       TileRenderer::create(effects(), {.bodyRadiusMeters = viewed.radiusMeters, .bodyScheme = viewed.scheme});
   if (!renderer) return renderer.error();
   s.renderer = std::move(*renderer);
-  s.stream->selectBody(body);
+  const std::vector<std::size_t> inView = bodiesInView(*scene, body);
+  s.stream->selectBodies(inView);
+  for (std::size_t which = 0; which < inView.size(); ++which) s.views.emplace_back(*s.stream, which);
   drawSettings.placement = s.options.placement.value_or(s.renderer->selfTest().chosen);
   drawSettings.transition = s.options.transition;
   drawSettings.samples = s.options.samples.value_or(s.renderer->samplesByDefault());
@@ -127,7 +145,7 @@ Result<bool> ViewSession::ready() {
 }
 
 const SceneInfo& ViewSession::scene() const { return *state_->stream->scene(); }
-const BodyInfo& ViewSession::body() const { return *state_->stream->body(); }
+const BodyInfo& ViewSession::body() const { return state_->anchorView().info(); }
 
 std::vector<EffectCall> ViewSession::effects() const {
   std::vector<EffectCall> calls = scene().effects;
@@ -152,12 +170,12 @@ bool ViewSession::State::takeArrivals(const UploadBudget& budget) {
   std::size_t bytes = 0;
   bool any = false;
   while (bytes < budget.bytes) {
-    const std::vector<TilePtr> arrived = stream->takeDecoded(std::min(kUploadBatchBytes, budget.bytes - bytes));
+    const std::vector<ArrivedTile> arrived = stream->takeDecoded(std::min(kUploadBatchBytes, budget.bytes - bytes));
     if (arrived.empty()) break;
-    for (const TilePtr& tile : arrived) {
-      const std::size_t gpuBytes = renderer->upload(tile);
+    for (const ArrivedTile& tile : arrived) {
+      const std::size_t gpuBytes = renderer->upload(tile.tile, tile.body);
       stream->markResident(tile, gpuBytes);
-      if (options.explain) kept.insert_or_assign(tile->metadata.path, tile);
+      if (options.explain && tile.body == anchor) kept.insert_or_assign(tile.tile->metadata.path, tile.tile);
       bytes += std::max<std::size_t>(gpuBytes, 1);
     }
     any = true;
@@ -169,131 +187,79 @@ bool ViewSession::State::takeArrivals(const UploadBudget& budget) {
 ViewPose ViewSession::State::resolved(const View& view) const {
   ViewPose result = view.pose;
   if (!view.aboveGround) return result;
-  if (const auto ground = stream->groundBelow(directionOf(result.longitude, result.latitude)))
-    result.altitudeMeters += ground->heightMeters;
+  if (const auto ground = anchorView().groundBelow(result)) result.altitudeMeters += ground->heightMeters;
   return result;
 }
 
-// Under the drawn ground there is nothing to see. It may be higher than the finest ground that is known, from which
-// poses count, as long as it is coarse: a fine tile has come and has not grown in yet. Then the camera stays above it
-// by half its height above that ground, and sinks as the drawn ground does.
-double ViewSession::State::altitudeAboveDrawn(const ViewPose& viewed) const {
-  const glm::dvec3 direction = directionOf(viewed.longitude, viewed.latitude);
-  const auto ground = stream->groundBelow(direction);
-  const auto surface = stream->drawnHeightBelow(direction, drawn);
-  // A camera under the ground was asked for.
-  if (!ground || !surface || viewed.altitudeMeters <= ground->heightMeters) return viewed.altitudeMeters;
-  return std::max(viewed.altitudeMeters, *surface + 0.5 * (viewed.altitudeMeters - ground->heightMeters));
+Camera ViewSession::State::cameraOver(const BodyView& view) const {
+  if (view.index() == anchor) return camera;
+  return cameraOverOther(camera, anchorView().info().positionScene, view.info().positionScene,
+                         view.info().selection.radiusMeters);
 }
 
-// The tiles under the camera, down to the level that its height calls for, whether it looks there or not: the ground's
-// height comes from them.
-std::vector<WantedTile> ViewSession::State::groundChain(double allowedPixels) const {
-  const SelectionBody& body = stream->body()->selection;
-  const glm::dvec3 direction = directionOf(pose.longitude, pose.latitude);
-  const auto ground = stream->groundBelow(direction);
-  const double height =
-      std::max(pose.altitudeMeters - (ground ? ground->heightMeters : 0.0), kLowestHeightAboveGroundMeters);
-  const double allowedMeters = allowedPixels * height / pixelsPerRadian(camera);
-  std::vector<WantedTile> chain;
-  for (int level = 0; level <= body.maxLevel; ++level) {
-    const double error = body.geometricErrorMeters[static_cast<std::size_t>(level)];
-    const bool last = error <= allowedMeters || level == body.maxLevel;
-    chain.push_back({tileAt(body.scheme, direction, level), error * pixelsPerRadian(camera) / height, last});
-    if (last) break;
+bool ViewSession::State::chooseOfOthers(double allowedPixels, double seconds) {
+  bool changed = false;
+  for (BodyView& view : views) {
+    if (view.index() == anchor) continue;
+    const Camera over = cameraOver(view);
+    const bool tooSmall = diameterPixels(over, view.highestRadiusMeters()) < kLeastDiameterPixels;
+    changed = (tooSmall ? view.hide() : view.choose(over, allowedPixels, seconds)) || changed;
   }
-  return chain;
+  return changed;
 }
 
-// Asks for the selection and the ground; true when the ground's finest wanted tile is there. groundFirst: the camera's
-// own height depends on the ground, so until that is known no fine tile is asked for where the camera only seems to be.
-// lower: what is wanted from the heights that the camera was held above. Asked for too, or what keeps the camera up
-// would never come.
-bool ViewSession::State::requestTiles(double allowedPixels, const std::vector<WantedTile>& lower, bool groundFirst,
-                                      bool ahead) {
-  std::vector<WantedTile> wanted = selection.wanted;
-  const std::vector<WantedTile> chain = groundChain(allowedPixels);
-  const bool groundKnown = stream->resident(chain.back().path) != nullptr;
-  if (groundFirst && !groundKnown) {
-    const auto ground = stream->groundBelow(directionOf(pose.longitude, pose.latitude));
-    const int finest = (ground ? ground->level : 0) + kLevelsAheadOfGround;
-    std::erase_if(wanted, [&](const WantedTile& tile) { return tile.path.level() > finest; });
+UpdateReport ViewSession::State::requestOf(const View& view, double allowedPixels, bool arrived, bool still) {
+  bool groundKnown = true;
+  for (BodyView& body : views) {
+    std::optional<BodyView::GroundCall> ground;
+    if (body.index() == anchor) ground = {pose, view.aboveGround};
+    groundKnown = body.request(cameraOver(body), allowedPixels, ground, view.ahead) && groundKnown;
   }
-  std::unordered_set<FacePath> known;
-  known.reserve(wanted.size() * 2);
-  for (const WantedTile& tile : wanted) known.insert(tile.path);
-  for (const auto* more : {&lower, &chain})
-    for (const WantedTile& tile : *more)
-      if (known.insert(tile.path).second) wanted.push_back(tile);
-  std::stable_sort(wanted.begin(), wanted.end(),
-                   [](const WantedTile& a, const WantedTile& b) { return a.path.level() < b.path.level(); });
-  wantedCount = wanted.size();
-  missing = static_cast<std::size_t>(std::count_if(
-      wanted.begin(), wanted.end(), [&](const WantedTile& tile) { return stream->resident(tile.path) == nullptr; }));
-  if (ahead && (groundKnown || !groundFirst)) addBesidePicture(allowedPixels, known, wanted);
-  stream->want(wanted, ViewOfTiles{camera, allowedPixels});
-  return groundKnown;
+  UpdateReport report;
+  const bool complete = std::ranges::all_of(views, &BodyView::isComplete);
+  report.complete = complete && (groundKnown || !view.aboveGround);
+  const bool idle = stream->idle();
+  report.settled = std::ranges::all_of(views, &BodyView::isSettled) && groundKnown && still && !arrived && idle;
+  if (report.settled && !std::exchange(wasSettled, true)) returnFreedMemory();
+  wasSettled = report.settled;
+  const bool missing = std::ranges::any_of(views, [](const BodyView& body) { return body.missing() > 0; });
+  report.stuck = !arrived && missing && idle && stream->status().failed > 0;
+  return report;
 }
 
-void ViewSession::State::addBesidePicture(double allowedPixels, std::unordered_set<FacePath>& known,
-                                          std::vector<WantedTile>& wanted) const {
-  const SelectionSettings settings{.errorPixels = allowedPixels};
-  const TileSelection wide = selectTiles(
-      widened(camera, kShareAhead), stream->body()->selection,
-      [this](const FacePath& path) { return stream->known(path); }, settings);
-  for (WantedTile tile : wide.wanted) {
-    tile.beside = true;
-    if (known.insert(tile.path).second) wanted.push_back(tile);
-  }
-}
-
-void ViewSession::State::changeLevelsOverTime(bool wanted) {
-  if (wanted != std::exchange(overTime, wanted)) transitions = LevelTransitions({.morph = wanted});
-}
-
-// What is wanted from there, and from what is wanted to what is drawn; true if that is another picture.
-bool ViewSession::State::chooseTiles(const Camera& from, double allowedPixels, double seconds) {
-  SelectionSettings settings;
-  settings.errorPixels = allowedPixels;
-  const auto known = [this](const FacePath& path) { return stream->known(path); };
-  selection = selectTiles(from, stream->body()->selection, known, settings);
-  std::vector<DrawnTile> next = transitions.advance(
-      selection.draw, seconds,
-      [this](const FacePath& path) {
-        return path.level() > 0 && stream->resident(path) != nullptr && stream->resident(path.parent()) != nullptr;
-      },
-      [&](const FacePath& path) { return tileMayBeSeen(path, from, stream->body()->selection, known); });
-  const bool changed = next != drawn;
-  drawn = std::move(next);
-  return changed || !transitions.settled();
+void ViewSession::State::evict() {
+  std::vector<std::vector<FacePath>> drawn;
+  for (const BodyView& view : views) drawn.push_back(view.drawnPaths());
+  const auto gone = stream->evictOfAll(drawn);
+  for (std::size_t which = 0; which < gone.size(); ++which)
+    for (const FacePath& path : gone[which]) renderer->remove(path, which);
 }
 
 UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   State& s = *state_;
   s.nameUnknownEffects();
   const bool arrived = s.takeArrivals(budget);
+  BodyView& anchor = s.anchorView();
   const ViewPose viewed = s.resolved(view);
   ViewPose pose = viewed;
   const double altitudeBefore = s.pose.altitudeMeters;
-  pose.altitudeMeters = s.altitudeAboveDrawn(viewed);
+  pose.altitudeMeters = anchor.altitudeAboveDrawn(viewed);
   const auto cameraOf = [&](const ViewPose& at) {
     return cameraFromPose(at, body().selection.radiusMeters, s.options.verticalFieldOfView, view.widthPixels,
                           view.heightPixels);
   };
   Camera camera = cameraOf(pose);
   bool levelsChanged = false;
-  std::vector<WantedTile> lower;
   double altitudeDue = pose.altitudeMeters;  // above what is drawn now, not a frame ago
   if (!frozen) {
-    s.changeLevelsOverTime(drawSettings.transition != Transition::None);
-    levelsChanged = s.chooseTiles(camera, errorPixels, view.seconds);
+    for (BodyView& each : s.views) each.changeLevelsOverTime(drawSettings.transition != Transition::None);
+    levelsChanged = anchor.choose(camera, errorPixels, view.seconds);
     for (int rises = 0; rises < kMostRises; ++rises) {
-      altitudeDue = s.altitudeAboveDrawn(viewed);
+      altitudeDue = anchor.altitudeAboveDrawn(viewed);
       if (altitudeDue <= pose.altitudeMeters) break;
-      lower.insert(lower.end(), s.selection.wanted.begin(), s.selection.wanted.end());
       pose.altitudeMeters = altitudeDue;
       camera = cameraOf(pose);
-      levelsChanged = s.chooseTiles(camera, errorPixels, 0) || levelsChanged;
+      levelsChanged = anchor.chooseHigher(camera, errorPixels) || levelsChanged;
     }
   }
   const bool moved = s.firstUpdate || camera.positionBody != s.camera.positionBody || camera.right != s.camera.right ||
@@ -303,39 +269,69 @@ UpdateReport ViewSession::update(const View& view, const UploadBudget& budget) {
   s.pose = pose;
   s.firstUpdate = false;
   UpdateReport report;
-  report.changed = moved || levelsChanged;
   if (!frozen) {
-    const bool groundKnown = s.requestTiles(errorPixels, lower, view.aboveGround, view.ahead);
-    report.complete = s.selection.complete && (groundKnown || !view.aboveGround);
+    levelsChanged = s.chooseOfOthers(errorPixels, view.seconds) || levelsChanged;
     const bool still =
         pose.altitudeMeters == altitudeDue && (!view.aboveGround || pose.altitudeMeters == altitudeBefore);
-    const bool idle = s.stream->idle();
-    report.settled =
-        s.selection.complete && s.transitions.settled() && groundKnown && still && !arrived && s.missing == 0 && idle;
-    if (report.settled && !std::exchange(s.wasSettled, true)) returnFreedMemory();
-    s.wasSettled = report.settled;
-    report.stuck = !arrived && s.missing > 0 && idle && s.stream->status().failed > 0;
+    report = s.requestOf(view, errorPixels, arrived, still);
   }
-  std::vector<FacePath> drawn;
-  for (const DrawnTile& tile : s.drawn) drawn.push_back(tile.path);
-  for (const FacePath& path : s.stream->evict(drawn)) s.renderer->remove(path);
+  report.changed = moved || levelsChanged;
+  s.evict();
   return report;
 }
 
-DrawStats ViewSession::draw() { return state_->renderer->draw(state_->camera, state_->drawn, drawSettings); }
-
-CoverageCount ViewSession::coverage() {
-  return state_->renderer->countCoverage(state_->camera, state_->drawn, drawSettings,
-                                         body().selection.occluderRadiusMeters);
+void ViewSession::State::changeAnchor(std::size_t to) {
+  camera = cameraOver(views[to]);
+  anchor = to;
+  pose = poseFromCamera(camera);
 }
+
+bool ViewSession::anchorNearest() {
+  State& s = *state_;
+  std::size_t nearest = s.anchor;
+  double least = kNearerToAnchor * s.camera.altitudeMeters;
+  for (const BodyView& view : s.views) {
+    const double altitude = s.cameraOver(view).altitudeMeters;
+    if (view.index() == s.anchor || altitude >= least) continue;
+    nearest = view.index();
+    least = altitude;
+  }
+  if (nearest == s.anchor) return false;
+  s.changeAnchor(nearest);
+  return true;
+}
+
+void ViewSession::anchorFirst() {
+  if (state_->anchor != 0) state_->changeAnchor(0);
+}
+
+std::vector<BodyPicture> ViewSession::State::pictures() const {
+  std::vector<BodyPicture> bodies{anchorView().picture(camera)};
+  for (const BodyView& view : views) {
+    if (view.index() == anchor) continue;
+    const Camera over = cameraOver(view);
+    if (diameterPixels(over, view.highestRadiusMeters()) >= kLeastDiameterPixels) bodies.push_back(view.picture(over));
+  }
+  return bodies;
+}
+
+DrawStats ViewSession::draw() { return state_->renderer->draw(state_->pictures(), drawSettings); }
+
+CoverageCount ViewSession::coverage() { return state_->renderer->countCoverage(state_->pictures(), drawSettings); }
 
 void ViewSession::finish() { glFinish(); }
 
 const ViewPose& ViewSession::pose() const noexcept { return state_->pose; }
 const Camera& ViewSession::camera() const noexcept { return state_->camera; }
 
+ViewPose ViewSession::poseOverFirst() const {
+  ViewPose pose = state_->anchor == 0 ? state_->pose : poseFromCamera(state_->cameraOver(state_->views.front()));
+  pose.roll = 0;
+  return pose;
+}
+
 std::optional<double> ViewSession::groundHeight(const glm::dvec3& directionBody) const {
-  const auto ground = state_->stream->groundBelow(directionBody);
+  const auto ground = state_->stream->groundBelow(directionBody, state_->anchor);
   return ground ? std::optional<double>(ground->heightMeters) : std::nullopt;
 }
 
@@ -345,12 +341,34 @@ std::optional<double> ViewSession::heightAboveGround() const {
 }
 
 double ViewSession::progress() const noexcept {
-  return state_->wantedCount == 0 ? 0
-                                  : 1 - static_cast<double>(state_->missing) / static_cast<double>(state_->wantedCount);
+  std::size_t wanted = 0;
+  for (const BodyView& view : state_->views) wanted += view.wanted();
+  return wanted == 0 ? 0 : 1 - static_cast<double>(missing()) / static_cast<double>(wanted);
 }
 
-std::size_t ViewSession::missing() const noexcept { return state_->missing; }
-const std::vector<DrawnTile>& ViewSession::drawn() const noexcept { return state_->drawn; }
+std::size_t ViewSession::missing() const noexcept {
+  std::size_t sum = 0;
+  for (const BodyView& view : state_->views) sum += view.missing();
+  return sum;
+}
+
+const std::vector<DrawnTile>& ViewSession::drawn() const noexcept { return state_->anchorView().drawn(); }
+
+std::vector<BodyStatus> ViewSession::bodies() const {
+  std::vector<BodyStatus> all;
+  for (const BodyView& view : state_->views) {
+    const Camera over = state_->cameraOver(view);
+    all.push_back({view.info().name, over.altitudeMeters, diameterPixels(over, view.info().selection.radiusMeters),
+                   view.drawn().size(), state_->stream->residentCount(view.index())});
+  }
+  return all;
+}
+
+double ViewSession::largestRadiusMeters() const {
+  double largest = 0;
+  for (const BodyView& view : state_->views) largest = std::max(largest, view.info().selection.radiusMeters);
+  return largest;
+}
 
 StreamStatus ViewSession::streamStatus() const { return state_->stream->status(); }
 const SelfTestReport& ViewSession::selfTest() const { return state_->renderer->selfTest(); }
@@ -359,25 +377,6 @@ std::size_t ViewSession::gpuBytes() const { return state_->renderer ? state_->re
 TilePtr ViewSession::keptTile(const FacePath& path) const {
   const auto found = state_->kept.find(path);
   return found == state_->kept.end() ? nullptr : found->second;
-}
-
-ViewPose wholeBodyPose(const SceneInfo& scene, const BodyInfo& body, double verticalFieldOfView, int widthPixels,
-                       int heightPixels) {
-  // The disc takes 85 % of the picture's shorter side: sin(half its angle) = R / (R + altitude).
-  const double shorter = std::min(1.0, static_cast<double>(widthPixels) / heightPixels);
-  const double halfAngle = 0.85 * std::atan(std::tan(verticalFieldOfView / 2) * shorter);
-  ViewPose pose;
-  pose.altitudeMeters = body.selection.radiusMeters * (1 / std::sin(halfAngle) - 1);
-  pose.pitch = -std::numbers::pi / 2;
-  for (const EffectCall& effect : scene.effects) {
-    const auto longitude = effect.parameters.find("longitude"), latitude = effect.parameters.find("latitude");
-    if (effect.kind != EffectKind::Sun || longitude == effect.parameters.end() || latitude == effect.parameters.end())
-      continue;
-    // West of where the sun stands overhead: there it is morning, and low light shows relief.
-    pose.longitude = std::remainder(longitude->second - 62 * std::numbers::pi / 180, 2 * std::numbers::pi);
-    pose.latitude = latitude->second;
-  }
-  return pose;
 }
 
 std::string selfTestText(const SelfTestReport& report) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "client/app/body_status.h"
 #include "client/app/view_options.h"
 #include "client/render/tile_renderer.h"
 #include "client/tiles/tile_stream.h"
@@ -31,6 +32,8 @@ struct UpdateReport {
   bool stuck = false;     ///< tiles are missing and none of them will come: the server refused them for good
 };
 
+// A scene's bodies are all in the picture, in their places. The camera is known relative to one of them, the anchor: at
+// first the one of --body. Only its ground holds the camera up.
 class ViewSession {
  public:
   /// Does not wait for the server. wake: from any thread, when something arrived. A default cache that cannot be
@@ -43,12 +46,24 @@ class ViewSession {
   /// "--body", and what TileRenderer::create says.
   Result<bool> ready();
   const SceneInfo& scene() const;
+  /// The anchor.
   const BodyInfo& body() const;
+  /// All that are in view or could be, the one of --body first: those of the scene that keep clear of it and each
+  /// other.
+  std::vector<BodyStatus> bodies() const;
+  double largestRadiusMeters() const;
   /// The scene's, less those that the options leave out.
   std::vector<EffectCall> effects() const;
 
-  /// The camera of a pose, at a picture size. aboveGround: the pose's altitude counts from the ground as far as it is
-  /// known.
+  /// Makes that body the anchor that the camera is nearest to, if it is clearly nearer than to the anchor. True if it
+  /// is another: pose() is then the same camera's over that body, to within the bound of cameraOverOther, and has a
+  /// roll where that body's level is another. The picture does not change.
+  bool anchorNearest();
+  /// Makes the body of --body the anchor, in the same way.
+  void anchorFirst();
+
+  /// The camera of a pose over the anchor, at a picture size. aboveGround: the pose's altitude counts from the ground
+  /// as far as it is known.
   struct View {
     ViewPose pose;
     bool aboveGround = false;
@@ -67,17 +82,20 @@ class ViewSession {
   /// ground is held above the drawn ground too, which may be higher as long as it is coarse.
   const ViewPose& pose() const noexcept;
   const Camera& camera() const noexcept;
+  /// As pose, over the body of --body: level with it, for a flight knows no roll.
+  ViewPose poseOverFirst() const;
   std::optional<double> groundHeight(const glm::dvec3& directionBody) const;
   /// Height above the finest ground under the camera; empty if none is known.
   std::optional<double> heightAboveGround() const;
   /// Share of the wanted tiles that are there, 0..1, and how many are not.
   double progress() const noexcept;
   std::size_t missing() const noexcept;
+  /// Of the anchor.
   const std::vector<DrawnTile>& drawn() const noexcept;
   StreamStatus streamStatus() const;
   const SelfTestReport& selfTest() const;
   std::size_t gpuBytes() const;
-  /// With ViewOptions::explain a tile's mesh as long as the session lives; null otherwise.
+  /// With ViewOptions::explain a mesh of the anchor's as long as the session lives; null otherwise.
   TilePtr keptTile(const FacePath& path) const;
 
   DrawSettings drawSettings;
@@ -89,10 +107,6 @@ class ViewSession {
   explicit ViewSession(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
-
-/// Where a viewer starts without --camera: the whole body in view, the sun to one side where the scene has one.
-ViewPose wholeBodyPose(const SceneInfo& scene, const BodyInfo& body, double verticalFieldOfView, int widthPixels,
-                       int heightPixels);
 
 /// "integer exact; TwoSum, TwoProd exact (precise); fma not fused": for the overlay and the figures.
 std::string selfTestText(const SelfTestReport& report);

@@ -13,6 +13,7 @@ constexpr double kZoomPerStep = 0.22;  // a wheel step changes the height by a f
 constexpr double kZoomSeconds = 0.12;  // time constants of the smoothing
 constexpr double kVelocitySeconds = 0.18;
 constexpr double kSpinSeconds = 0.30;
+constexpr double kRollSeconds = 0.5, kLeastRoll = 1e-4;
 constexpr double kLongestStepSeconds = 0.1;
 constexpr double kHighestRadii = 60;
 // A point further away than this many heights is not followed exactly: near the horizon a pixel is kilometres.
@@ -68,6 +69,17 @@ void CameraControls::setPose(const ViewPose& pose) {
   stop();
 }
 
+void CameraControls::moveOver(const ViewPose& pose) {
+  pose_ = pose;
+  pendingZoom_ = 0;
+  spinPerSecond_ = glm::dvec3(0.0);
+}
+
+void CameraControls::level(double seconds) noexcept {
+  pose_.roll *= std::exp(-seconds / kRollSeconds);
+  if (std::abs(pose_.roll) < kLeastRoll) pose_.roll = 0;
+}
+
 void CameraControls::stop() noexcept {
   pendingZoom_ = 0;
   spinPerSecond_ = velocity_ = glm::dvec3(0.0);
@@ -80,7 +92,7 @@ void CameraControls::toggleMode() {
 }
 
 bool CameraControls::moving() const noexcept {
-  return pendingZoom_ != 0 || spinPerSecond_ != glm::dvec3(0.0) || velocity_ != glm::dvec3(0.0);
+  return pendingZoom_ != 0 || spinPerSecond_ != glm::dvec3(0.0) || velocity_ != glm::dvec3(0.0) || pose_.roll != 0;
 }
 
 ViewPose CameraControls::advance(const ControlInput& input, const ControlView& view, const GroundHeight& ground) {
@@ -102,11 +114,13 @@ ViewPose CameraControls::advance(const ControlInput& input, const ControlView& v
     look(input.cursorMovePixels, view);
   }
   fly(input, view, seconds, height);
+  level(seconds);
 
   const glm::dvec3 after = directionOf(pose_.longitude, pose_.latitude);
   if (const auto known = ground(after))
     pose_.altitudeMeters = std::max(pose_.altitudeMeters, *known + kLowestHeightAboveGroundMeters);
-  pose_.altitudeMeters = std::min(pose_.altitudeMeters, kHighestRadii * view.radiusMeters);
+  pose_.altitudeMeters =
+      std::min(pose_.altitudeMeters, kHighestRadii * std::max(view.radiusMeters, view.largestRadiusMeters));
   if (seconds > 0) {
     const glm::dvec3 moved = (after - before) * (view.radiusMeters + pose_.altitudeMeters);
     speedMetersPerSecond_ = std::hypot(glm::length(moved), pose_.altitudeMeters - altitudeBefore) / seconds;
@@ -167,7 +181,8 @@ void CameraControls::fly(const ControlInput& input, const ControlView& view, dou
   velocity_ = target + (velocity_ - target) * std::exp(-seconds / kVelocitySeconds);
   if (target == glm::dvec3(0.0) && glm::length(velocity_) < 1e-3) velocity_ = glm::dvec3(0.0);
   if (velocity_ == glm::dvec3(0.0)) return;
-  const double metres = freeSpeedMetersPerSecond(heightAboveGround, view.radiusMeters) * seconds;
+  const double metres =
+      freeSpeedMetersPerSecond(heightAboveGround, std::max(view.radiusMeters, view.largestRadiusMeters)) * seconds;
   // Forward is along the view: part of it level, along the heading's great circle, and part of it climb.
   const double level = velocity_.z * std::cos(pose_.pitch);
   const double climb = velocity_.z * std::sin(pose_.pitch) + velocity_.y;

@@ -41,6 +41,8 @@ struct ControlView {
   double radiusMeters = 0;
   double verticalFieldOfView = 0.9;
   int widthPixels = 1280, heightPixels = 720;
+  /// Of the bodies that can be flown to, if larger than this one: how high and how fast one may fly.
+  double largestRadiusMeters = 0;
 };
 
 /// Height of the ground under a unit direction, metres above the reference sphere; empty where nothing is known yet.
@@ -50,13 +52,16 @@ class CameraControls {
  public:
   explicit CameraControls(const ViewPose& home) : home_(home), pose_(home) {}
 
-  /// One frame. The result is finite, at least kLowestHeightAboveGroundMeters above known ground and at most 60 radii
-  /// high.
+  /// One frame. The result is finite, at least kLowestHeightAboveGroundMeters above known ground and at most 60 of
+  /// the largest radii high.
   ViewPose advance(const ControlInput& input, const ControlView& view, const GroundHeight& ground);
 
   const ViewPose& pose() const noexcept { return pose_; }
   /// Jumps, and stops all motion.
   void setPose(const ViewPose& pose);
+  /// The same place and view as a pose over another body has them. Flight goes on; what turned about the old body ends,
+  /// and the picture rolls level with the new one.
+  void moveOver(const ViewPose& pose);
   void setHome(const ViewPose& home) { home_ = home; }
   void goHome() { setPose(home_); }
   ControlMode mode() const noexcept { return mode_; }
@@ -73,6 +78,7 @@ class CameraControls {
   void zoom(double seconds, double groundMeters);
   void fly(const ControlInput& input, const ControlView& view, double seconds, double heightAboveGround);
   void rotateAboutCentre(const glm::dvec3& axis, double angle);
+  void level(double seconds) noexcept;
   void stop() noexcept;
 
   ViewPose home_, pose_;

@@ -1,7 +1,10 @@
 #include "client/render/coverage.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <vector>
 
 #include "client/render/tile_renderer.h"
 
@@ -34,9 +37,10 @@ class SphereTest {
 
 }  // namespace
 
-CoverageCount countCoveragePixels(const Camera& camera, std::span<const std::uint8_t> pixels,
-                                  double lowestRadiusMeters) {
-  const SphereTest sphere(camera, lowestRadiusMeters);
+CoverageCount countCoveragePixels(std::span<const LowestSphere> spheres, std::span<const std::uint8_t> pixels) {
+  std::vector<SphereTest> tests;
+  for (const LowestSphere& sphere : spheres) tests.emplace_back(sphere.camera, sphere.radiusMeters);
+  const Camera& camera = spheres.front().camera;
   const double halfHeight = std::tan(0.5 * camera.verticalFieldOfView);
   const double perPixel = 2 * halfHeight / camera.heightPixels;
   CoverageCount count;
@@ -51,10 +55,16 @@ CoverageCount countCoveragePixels(const Camera& camera, std::span<const std::uin
         continue;
       }
       const double x = (column + 0.5 - 0.5 * camera.widthPixels) * perPixel;
-      if (sphere.meets(rowDirection + camera.right * x)) ++count.uncovered;
+      const glm::dvec3 direction = rowDirection + camera.right * x;
+      if (std::ranges::any_of(tests, [&](const SphereTest& test) { return test.meets(direction); })) ++count.uncovered;
     }
   }
   return count;
+}
+
+CoverageCount countCoveragePixels(const Camera& camera, std::span<const std::uint8_t> pixels,
+                                  double lowestRadiusMeters) {
+  return countCoveragePixels(std::array{LowestSphere{camera, lowestRadiusMeters}}, pixels);
 }
 
 }  // namespace terrane

@@ -18,13 +18,14 @@ class DetailPass final : public EffectPass {
   DetailPass(const DetailStrength& strength, const EffectList& effects, gl::Program program)
       : strength_(strength), effects_(effects), program_(std::move(program)) {}
 
-  PassStats draw(const Camera& camera, std::span<const TileDraw> /*tiles*/) override {
+  PassStats draw(const Camera& camera, std::span<const TileDraw> /*tiles*/, const PassBody& body) override {
     if (!depth_.take(camera.widthPixels, camera.heightPixels)) return {};
     program_.use();
     depth_.bind();
     setGroundPosition(program_, camera);
     setDetailOctaves(program_, camera);
     setUniform(program_.uniform("cameraBody"), glm::vec3(camera.positionBody));
+    setUniform(program_.uniform("reachMeters"), static_cast<float>(body.reachMeters));
     setUniform(program_.uniform("finestPixels"), strength_.finestPixels);
     setUniform(program_.uniform("firstExponent"), kFinestDetailExponent);
     setUniform(program_.uniform("octaveSlopes"), strength_.slopes);

@@ -3,6 +3,7 @@
 // take is bounded by what is drawn; tiles too far for any grain to be seen are passed over before any work. No GL but
 // to read a tile's vertices back, once; GL thread only.
 
+#include <algorithm>
 #include <array>
 #include <unordered_map>
 #include <vector>
@@ -25,6 +26,9 @@ class DustInstances {
   void gather(const Camera& camera, std::span<const TileDraw> tiles);
 
   const std::vector<GrainInstance>& ofMesh(int mesh) const noexcept { return meshes_[static_cast<std::size_t>(mesh)]; }
+  bool isEmpty() const noexcept {
+    return std::ranges::all_of(meshes_, [](const auto& instances) { return instances.empty(); });
+  }
   std::size_t tilesKept() const noexcept { return kept_.size(); }
 
  private:

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstring>
 #include <iterator>
+#include <map>
+#include <utility>
 
 #include "client/dust/pebble_shapes.h"
 #include "client/gl/depth_copy.h"
@@ -104,18 +106,23 @@ class DustPass final : public EffectPass {
   DustPass(const DustSettings& settings, const PassContext& context, GrainProgram grains, GrainProgram shadows)
       : effects_(context.effects),
         relative_(!context.selfTest.twoSumExact),
-        gathered_(settings, context.bodyRadiusMeters, context.bodyScheme, relative_),
+        settings_(settings),
         grains_(std::move(grains)),
         shadows_(std::move(shadows)) {
     for (int mesh = 0; mesh < kGrainMeshes; ++mesh) batches_[static_cast<std::size_t>(mesh)].make(pebbleMesh(mesh));
   }
 
-  PassStats draw(const Camera& camera, std::span<const TileDraw> tiles) override {
-    gathered_.gather(camera, tiles);
+  PassStats draw(const Camera& camera, std::span<const TileDraw> tiles, const PassBody& body) override {
+    DustInstances& gathered =
+        gathered_.try_emplace(body.body, settings_, body.radiusMeters, body.scheme, relative_).first->second;
+    gathered.gather(camera, tiles);
+    // Grains are seen from so near that hardly ever two bodies have any: the batches stay with the one that had some.
+    if (gathered.isEmpty() && body.body != batchesOf_) return {};
+    batchesOf_ = body.body;
     PassStats stats;
     for (int mesh = 0; mesh < kGrainMeshes; ++mesh) {
       Batch& batch = batches_[static_cast<std::size_t>(mesh)];
-      batch.update(gathered_.ofMesh(mesh));
+      batch.update(gathered.ofMesh(mesh));
       if (batch.uploaded.empty()) continue;
       stats.triangles += (batch.indexCount / 3 + kBoxTriangles) * batch.uploaded.size();
       stats.drawCalls += 2;
@@ -166,7 +173,9 @@ class DustPass final : public EffectPass {
 
   const EffectList& effects_;
   bool relative_;
-  DustInstances gathered_;
+  DustSettings settings_;
+  std::map<std::size_t, DustInstances> gathered_;  ///< by body
+  std::size_t batchesOf_ = 0;
   GrainProgram grains_, shadows_;
   std::array<Batch, kGrainMeshes> batches_;
   gl::DepthCopy depth_;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "client/render/body_picture.h"
 #include "client/render/effect_factories.h"
 #include "client/render/tile_draw.h"
 #include "common/view/camera.h"
@@ -18,7 +19,6 @@ struct PassContext {
   const SelfTestReport& selfTest;
   const EffectList& effects;  ///< all of the scene's, for programs that are lit as the ground is
   double bodyRadiusMeters = 0;
-  Scheme bodyScheme = Scheme::Cube;
 };
 
 struct PassStats {
@@ -28,9 +28,10 @@ struct PassStats {
 class EffectPass {
  public:
   virtual ~EffectPass() = default;
-  /// Into the framebuffer that is bound and holds the tiles' colour and depth, with their state (reversed depth test,
-  /// back faces culled) set, and again when it returns. tiles: those that were drawn.
-  virtual PassStats draw(const Camera& camera, std::span<const TileDraw> tiles) = 0;
+  /// Once a frame for every body. Into the framebuffer that is bound and holds all tiles' colour and depth, with their
+  /// state (reversed depth test, back faces culled) set, and again when it returns. tiles: those of this body that were
+  /// drawn; the camera is in its frame.
+  virtual PassStats draw(const Camera& camera, std::span<const TileDraw> tiles, const PassBody& body) = 0;
   virtual std::size_t gpuBytes() const noexcept = 0;
 };
 

@@ -26,6 +26,7 @@ void row(const char* label, const std::string& value) {
 
 void figureRows(const HudState& s) {
   row("ground", s.groundKnown ? lengthText(s.groundMeters) + " above" : "not known yet");
+  if (!s.body.empty()) row("over", s.body);
   row("sphere", lengthText(s.altitudeMeters) + " above");
   row("place", fmt::format("{:.5f}, {:.5f} deg", s.longitudeDegrees, s.latitudeDegrees));
   row("view", fmt::format("heading {:.1f}, pitch {:.1f} deg", s.headingDegrees, s.pitchDegrees));

@@ -12,6 +12,7 @@ namespace terrane {
 
 /// What is shown; lengths in metres.
 struct HudState {
+  std::string body;           ///< that the camera is over; empty where there is only one
   double altitudeMeters = 0;  ///< above the reference sphere
   double groundMeters = 0;    ///< height above the finest known ground
   bool groundKnown = false;

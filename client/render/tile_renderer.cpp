@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <map>
 #include <optional>
 #include <unordered_map>
 
@@ -59,13 +60,6 @@ bool provide(std::optional<RenderTarget>& target, const Camera& camera, TargetFo
   return true;
 }
 
-std::vector<DrawnTile> asTheyAre(std::span<const FacePath> paths) {
-  std::vector<DrawnTile> tiles;
-  tiles.reserve(paths.size());
-  for (const FacePath& path : paths) tiles.push_back({path, {}});
-  return tiles;
-}
-
 /// What the pass that fills the depth buffer draws.
 struct Surfaces {
   std::vector<DrawnTile> tiles;
@@ -79,21 +73,6 @@ Surfaces surfacesOf(std::span<const DrawnTile> tiles, const DrawSettings& settin
   return surfaces;
 }
 
-/// The same cut with the tiles that are in between as their parents' surfaces.
-std::vector<DrawnTile> asTheirParents(std::span<const DrawnTile> tiles) {
-  std::vector<DrawnTile> parents;
-  parents.reserve(tiles.size());
-  for (const DrawnTile& tile : tiles) {
-    TileMorph whole;
-    if (tile.morph.own > 0) {
-      whole.own = 1;
-      whole.sides.fill(1);
-    }
-    parents.push_back({tile.path, whole});
-  }
-  return parents;
-}
-
 }  // namespace
 
 struct TileRenderer::State {
@@ -101,7 +80,9 @@ struct TileRenderer::State {
   SelfTestReport selfTest;
   EffectList effects;
   std::vector<std::unique_ptr<EffectPass>> passes;
-  GpuTiles tiles;
+  std::map<std::size_t, GpuTiles> tiles;  ///< by body
+  double onlyRadiusMeters = 0;            ///< RendererOptions'
+  Scheme onlyScheme = Scheme::Cube;
   std::array<std::optional<TileProgram>, std::size_t{2} * kTilePurposeCount * kPlacementCount> programs;
   std::optional<RenderTarget> windowTarget, coverageTarget;
   std::optional<LevelBlend> levelBlend;  ///< once asked for
@@ -135,7 +116,8 @@ struct TileRenderer::State {
   bool reported = false;
 
   /// Uploaded tiles of the list, nearest first: what is in front is drawn first and hides the rest before it is shaded.
-  std::vector<TileDraw> nearestFirst(const Camera& camera, std::span<const DrawnTile> list, bool skirts) {
+  std::vector<TileDraw> nearestTilesFirst(std::size_t body, const Camera& camera, std::span<const DrawnTile> list,
+                                          bool skirts) {
     struct Entry {
       double distance;
       TileDraw draw;
@@ -143,7 +125,7 @@ struct TileRenderer::State {
     std::vector<Entry> entries;
     entries.reserve(list.size());
     for (const DrawnTile& drawn : list) {
-      if (const auto draw = makeTileDraw(tiles, drawn, skirts, capabilities.bufferWords)) {
+      if (const auto draw = makeTileDraw(tiles[body], drawn, skirts, capabilities.bufferWords)) {
         const Sphere& sphere = draw->tile->metadata.sphere;
         entries.push_back({glm::length(sphere.center - camera.positionBody) - sphere.radiusMeters, *draw});
       }
@@ -189,7 +171,7 @@ struct TileRenderer::State {
 
   /// What the vertex shader gives for each of a tile's vertices: four floats.
   std::vector<float> captured(const Camera& camera, const DrawnTile& tile, Placement placement, TilePurpose purpose) {
-    const auto draw = makeTileDraw(tiles, tile, false, capabilities.bufferWords);
+    const auto draw = makeTileDraw(tiles[0], tile, false, capabilities.bufferWords);
     if (!draw) return {};
     std::vector<float> values(4 * draw->tile->vertexCount);
     gl::Buffer feedback;
@@ -217,58 +199,80 @@ struct TileRenderer::State {
     stats.drawCalls += draw.skirts ? 2 : 1;
   }
 
-  DrawStats drawTiles(const Camera& camera, std::span<const DrawnTile> list, const DrawSettings& settings,
-                      Placement placement) {
+  DrawStats drawTiles(std::span<const BodyPicture> bodies, const DrawSettings& settings, Placement placement) {
     DrawStats stats;
     stats.samples = gl::boundSamples();
-    const Surfaces surfaces = surfacesOf(list, settings);
-    const std::vector<TileDraw> ordered = nearestFirst(camera, surfaces.tiles, surfaces.skirts);
+    std::vector<std::vector<TileDraw>> ordered;
     {
       const TilePass pass(capabilities, settings.wireframe);
-      forEachTile(camera, ordered, placement, TilePurpose::Shaded,
-                  [&](const TileProgram& program, const TileDraw& draw) {
-                    drawShaded(program, draw, settings, stats);
-                    ++stats.tiles;
-                  });
+      for (const BodyPicture& body : bodies) {
+        const Surfaces surfaces = surfacesOf(body.tiles, settings);
+        ordered.push_back(nearestTilesFirst(body.body, body.camera, surfaces.tiles, surfaces.skirts));
+        forEachTile(body.camera, ordered.back(), placement, TilePurpose::Shaded,
+                    [&](const TileProgram& program, const TileDraw& draw) {
+                      drawShaded(program, draw, settings, stats);
+                      ++stats.tiles;
+                    });
+      }
     }
-    if (settings.transition == Transition::Blend) blendParents(camera, list, settings, placement, stats);
-    if (settings.effectPasses && !settings.wireframe) drawPasses(camera, ordered, settings, stats);
+    if (settings.transition == Transition::Blend) blendParents(bodies, settings, placement, stats);
+    if (settings.effectPasses && !settings.wireframe)
+      for (std::size_t k = 0; k < bodies.size(); ++k)
+        if (!ordered[k].empty() || bodies.size() == 1)
+          drawPasses(bodies[k].camera, ordered[k], passBodyOf(bodies[k], bodies.size() == 1), settings, stats);
     return stats;
   }
 
-  void drawPasses(const Camera& camera, std::span<const TileDraw> ordered, const DrawSettings& settings,
-                  DrawStats& stats) {
+  void drawCoverage(const BodyPicture& body, const DrawSettings& settings, Placement placement) {
+    const Surfaces surfaces = surfacesOf(body.tiles, settings);
+    forEachTile(body.camera, nearestTilesFirst(body.body, body.camera, surfaces.tiles, surfaces.skirts), placement,
+                TilePurpose::Coverage, [](const TileProgram& program, const TileDraw& draw) {
+                  TileIndices& indices = *draw.tile->layout->indices;
+                  program.setMark(1.0f);
+                  drawList(indices.surface(draw.coarserEdges));
+                  if (!draw.skirts) return;
+                  program.setMark(0.5f);
+                  drawList(indices.skirts());
+                });
+  }
+
+  void drawPasses(const Camera& camera, std::span<const TileDraw> ordered, const PassBody& body,
+                  const DrawSettings& settings, DrawStats& stats) {
     if (passes.empty()) return;
     const TilePass state(capabilities, settings.wireframe, TilePass::Start::Kept);
     for (const auto& pass : passes) {
-      const PassStats drawn = pass->draw(camera, ordered);
+      const PassStats drawn = pass->draw(camera, ordered, body);
       stats.triangles += drawn.triangles;
       stats.drawCalls += drawn.drawCalls;
     }
   }
 
   /// Mixes the parents' surfaces over the tiles' own, which were just drawn; nothing to do where no tile is in between.
-  void blendParents(const Camera& camera, std::span<const DrawnTile> list, const DrawSettings& settings,
-                    Placement placement, DrawStats& stats) {
-    std::unordered_map<FacePath, float> shares;
-    for (const DrawnTile& tile : list)
-      if (tile.morph.own > 0) shares.emplace(tile.path, tile.morph.own);
-    if (shares.empty()) return;
+  void blendParents(std::span<const BodyPicture> bodies, const DrawSettings& settings, Placement placement,
+                    DrawStats& stats) {
+    const auto between = [](const DrawnTile& tile) { return tile.morph.own > 0; };
+    if (std::ranges::none_of(bodies, [&](const auto& body) { return std::ranges::any_of(body.tiles, between); }))
+      return;
     if (!levelBlend) {
       auto created = LevelBlend::create(capabilities);
       if (!created) return;
       levelBlend.emplace(std::move(*created));
     }
-    if (!levelBlend->bind(camera.widthPixels, camera.heightPixels)) return;
+    if (!levelBlend->bind(bodies.front().camera.widthPixels, bodies.front().camera.heightPixels)) return;
     {
       const TilePass pass(capabilities, settings.wireframe);
       LevelBlend::beginTiles();
-      forEachTile(camera, nearestFirst(camera, asTheirParents(list), true), placement, TilePurpose::Shaded,
-                  [&](const TileProgram& program, const TileDraw& draw) {
-                    const auto share = shares.find(draw.tile->metadata.path);
-                    LevelBlend::setShare(share == shares.end() ? 0.0f : share->second);
-                    drawShaded(program, draw, settings, stats);
-                  });
+      for (const BodyPicture& body : bodies) {
+        std::unordered_map<FacePath, float> shares;
+        for (const DrawnTile& tile : body.tiles)
+          if (between(tile)) shares.emplace(tile.path, tile.morph.own);
+        forEachTile(body.camera, nearestTilesFirst(body.body, body.camera, asTheirParents(body.tiles), true), placement,
+                    TilePurpose::Shaded, [&](const TileProgram& program, const TileDraw& draw) {
+                      const auto share = shares.find(draw.tile->metadata.path);
+                      LevelBlend::setShare(share == shares.end() ? 0.0f : share->second);
+                      drawShaded(program, draw, settings, stats);
+                    });
+      }
       LevelBlend::endTiles();
     }
     levelBlend->mix();
@@ -283,11 +287,12 @@ Result<std::unique_ptr<TileRenderer>> TileRenderer::create(const std::vector<Eff
   if (!report) return report.error();
   state->selfTest = *report;
   state->effects = makeEffects(effects);
+  state->onlyRadiusMeters = options.bodyRadiusMeters;
+  state->onlyScheme = options.bodyScheme;
   if (auto program = state->program({state->selfTest.chosen, TilePurpose::Shaded, false}); !program)
     return program.error();
   for (const auto& effect : state->effects) {
-    auto pass = effect->makePass(
-        {state->capabilities, state->selfTest, state->effects, options.bodyRadiusMeters, options.bodyScheme});
+    auto pass = effect->makePass({state->capabilities, state->selfTest, state->effects, options.bodyRadiusMeters});
     if (!pass) return pass.error();
     if (*pass) state->passes.push_back(std::move(*pass));
   }
@@ -307,11 +312,16 @@ Placement TileRenderer::usable(Placement requested) const noexcept {
 
 int TileRenderer::samplesByDefault() const noexcept { return state_->capabilities.rendersOnCpu ? 1 : kSamplesOnGpu; }
 
-std::size_t TileRenderer::upload(const std::shared_ptr<const Tile>& tile) { return state_->tiles.upload(*tile); }
-void TileRenderer::remove(const FacePath& path) { state_->tiles.remove(path); }
-void TileRenderer::clear() { state_->tiles.clear(); }
+std::size_t TileRenderer::upload(const std::shared_ptr<const Tile>& tile, std::size_t body) {
+  return state_->tiles[body].upload(*tile);
+}
+void TileRenderer::remove(const FacePath& path, std::size_t body) { state_->tiles[body].remove(path); }
+void TileRenderer::clear() {
+  for (auto& [body, tiles] : state_->tiles) tiles.clear();
+}
 std::size_t TileRenderer::gpuBytes() const noexcept {
-  std::size_t sum = state_->tiles.bytes();
+  std::size_t sum = 0;
+  for (const auto& [body, tiles] : state_->tiles) sum += tiles.bytes();
   for (const auto& pass : state_->passes) sum += pass->gpuBytes();
   return sum;
 }
@@ -321,17 +331,26 @@ DrawStats TileRenderer::draw(const Camera& camera, std::span<const FacePath> til
 }
 
 DrawStats TileRenderer::draw(const Camera& camera, std::span<const DrawnTile> tiles, const DrawSettings& settings) {
+  return draw(
+      std::array{BodyPicture{
+          .camera = camera, .tiles = tiles, .radiusMeters = state_->onlyRadiusMeters, .scheme = state_->onlyScheme}},
+      settings);
+}
+
+DrawStats TileRenderer::draw(std::span<const BodyPicture> bodies, const DrawSettings& settings) {
   const Placement placement = usable(settings.placement);
+  const Camera& camera = bodies.front().camera;
+  const std::vector<BodyPicture> ordered = nearestFirst(bodies);
   GLint framebuffer = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
   if (framebuffer != 0) {
     glViewport(0, 0, camera.widthPixels, camera.heightPixels);
-    return state_->drawTiles(camera, tiles, settings, placement);
+    return state_->drawTiles(ordered, settings, placement);
   }
   std::optional<RenderTarget>& target = state_->windowTarget;
   if (!provide(target, camera, TargetFormat::Rgba8, settings.samples)) return {};
   target->bind();
-  const DrawStats stats = state_->drawTiles(camera, tiles, settings, placement);
+  const DrawStats stats = state_->drawTiles(ordered, settings, placement);
   target->blitToWindow(camera.widthPixels, camera.heightPixels);
   return stats;
 }
@@ -343,31 +362,30 @@ CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const 
 
 CoverageCount TileRenderer::countCoverage(const Camera& camera, std::span<const DrawnTile> tiles,
                                           const DrawSettings& settings, double lowestRadiusMeters) {
+  return countCoverage(
+      std::array{BodyPicture{.body = 0, .camera = camera, .tiles = tiles, .lowestRadiusMeters = lowestRadiusMeters}},
+      settings);
+}
+
+CoverageCount TileRenderer::countCoverage(std::span<const BodyPicture> bodies, const DrawSettings& settings) {
   GLint framebuffer = 0;
   std::array<GLint, 4> viewport{};
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
   glGetIntegerv(GL_VIEWPORT, viewport.data());
   std::optional<RenderTarget>& target = state_->coverageTarget;
-  if (!provide(target, camera, TargetFormat::R8, 1)) return {};
+  if (!provide(target, bodies.front().camera, TargetFormat::R8, 1)) return {};
   target->bind();
-  const Surfaces surfaces = surfacesOf(tiles, settings);
   {
     const TilePass pass(state_->capabilities, false);
-    state_->forEachTile(camera, state_->nearestFirst(camera, surfaces.tiles, surfaces.skirts),
-                        usable(settings.placement), TilePurpose::Coverage,
-                        [](const TileProgram& program, const TileDraw& draw) {
-                          TileIndices& indices = *draw.tile->layout->indices;
-                          program.setMark(1.0f);
-                          drawList(indices.surface(draw.coarserEdges));
-                          if (!draw.skirts) return;
-                          program.setMark(0.5f);
-                          drawList(indices.skirts());
-                        });
+    for (const BodyPicture& body : nearestFirst(bodies))
+      state_->drawCoverage(body, settings, usable(settings.placement));
   }
   const std::vector<std::uint8_t> pixels = target->readRed();
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(framebuffer));
   glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
-  return countCoveragePixels(camera, pixels, lowestRadiusMeters);
+  std::vector<LowestSphere> spheres;
+  for (const BodyPicture& body : bodies) spheres.push_back({body.camera, body.lowestRadiusMeters});
+  return countCoveragePixels(spheres, pixels);
 }
 
 std::vector<float> TileRenderer::clipPositions(const Camera& camera, const DrawnTile& tile, Placement placement) {

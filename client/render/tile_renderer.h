@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "client/render/body_picture.h"
 #include "client/render/placement.h"
 #include "client/render/transition.h"
 #include "common/result.h"
@@ -58,7 +59,7 @@ struct DrawStats {
 };
 
 struct CoverageCount {
-  std::uint64_t uncovered = 0;  ///< background pixels whose ray meets the body's lowest sphere
+  std::uint64_t uncovered = 0;  ///< background pixels whose ray meets a body's lowest sphere
   std::uint64_t skirt = 0;      ///< pixels that show a skirt
 };
 
@@ -75,9 +76,10 @@ class TileRenderer {
   /// DrawSettings::samples where nobody asks for any: 4 on a GPU, 1 where software draws, which pays for each.
   int samplesByDefault() const noexcept;
 
-  /// Uploads; returns the bytes taken on the GPU (shared index buffers are counted once).
-  std::size_t upload(const std::shared_ptr<const Tile>& tile);
-  void remove(const FacePath& path);
+  /// Uploads; returns the bytes taken on the GPU (shared index buffers are counted once a body). body: any number that
+  /// tells bodies apart.
+  std::size_t upload(const std::shared_ptr<const Tile>& tile, std::size_t body = 0);
+  void remove(const FacePath& path, std::size_t body = 0);
   void clear();
 
   /// Draws into the current framebuffer (colour and depth cleared here). Tiles that were never uploaded are skipped;
@@ -85,10 +87,14 @@ class TileRenderer {
   /// precision: with that bound, draws into a RenderTarget of the camera's size and copies it over (the camera then has
   /// the window's size).
   DrawStats draw(const Camera& camera, std::span<const DrawnTile> tiles, const DrawSettings& settings);
+  /// Several bodies in one picture: one sky, one depth, so that the nearer hides the farther wherever they meet, and
+  /// each lit and put on its ground what effects put there. Cameras are one, each in its body's frame; at least one.
+  DrawStats draw(std::span<const BodyPicture> bodies, const DrawSettings& settings);
   /// The tiles as they are.
   DrawStats draw(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings);
 
   /// A pass of tiles only into an own target, read back: no sky, no multisampling, no effects.
+  CoverageCount countCoverage(std::span<const BodyPicture> bodies, const DrawSettings& settings);
   CoverageCount countCoverage(const Camera& camera, std::span<const DrawnTile> tiles, const DrawSettings& settings,
                               double lowestRadiusMeters);
   CoverageCount countCoverage(const Camera& camera, std::span<const FacePath> tiles, const DrawSettings& settings,

@@ -7,7 +7,8 @@
 #ifdef EFFECT_SUN
 uniform vec3 towardsSun;
 #endif
-uniform vec3 cameraBody;                     // float is enough for the direction up
+uniform vec3 cameraBody;                     // float is enough for the direction up, and for whose ground it is
+uniform float reachMeters;                   // of this body; ground farther from its centre is another's
 uniform float finestPixels;                 // a wavelength below is not shown
 uniform int firstExponent;                   // octave 0 has a wavelength of 2^firstExponent metres
 uniform float octaveSlopes[OCTAVE_COUNT];    // of its relief
@@ -21,6 +22,7 @@ void main() {
   float depth = depthAt(gl_FragCoord.xy);
   if (depth <= 0.0) discard;
   vec3 relative = groundRelative(gl_FragCoord.xy, depth);
+  if (length(cameraBody + relative) > reachMeters) discard;
   float scale = log2(footprintMeters(gl_FragCoord.xy, relative) * finestPixels) - float(firstExponent);
   if (!(scale < float(OCTAVE_COUNT))) discard;
 

@@ -1,17 +1,14 @@
 #include "client/tiles/tile_stream.h"
 
 #include <algorithm>
-#include <cmath>
-#include <unordered_map>
+#include <array>
 #include <utility>
 
 #include "client/net/fetch_queue.h"
+#include "client/tiles/body_tiles.h"
 #include "client/tiles/disk_cache.h"
 #include "client/tiles/scene_loader.h"
 #include "client/tiles/tile_pipeline.h"
-#include "client/tiles/tile_residency.h"
-#include "proto/resident_tile.h"
-#include "proto/tile_url.h"
 
 namespace terrane {
 namespace {
@@ -19,27 +16,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// Behind everything that is wanted.
-constexpr double kUnwanted = 1000.0;
-/// Behind everything in the picture.
-constexpr double kBeside = 100.0;
-
-/// What is in the picture first; level by level; within a level the larger error first.
-double fetchPriority(const WantedTile& wanted) {
-  const double error = std::isfinite(wanted.screenErrorPixels) ? std::max(0.0, wanted.screenErrorPixels) : 1e9;
-  return wanted.path.level() + 1.0 / (1.0 + error) + (wanted.beside ? kBeside : 0.0);
-}
-
-/// A tile that is wanted, or was just now, and is not resident in the revision in force. (Residency and the request are
-/// two things: a tile of an old revision is drawn while its successor is on its way.)
-struct Request {
-  enum class Stage : std::uint8_t { Ordered, Uploading, Failed };
-  Stage stage = Stage::Ordered;
-  TilePipeline::Id order = 0;
-  double priority = 0;
-  LastWanted wanted;
-  std::string revision;
-};
+/// Where bodies share the budget, tiles go in this order of age, calls of want() that they were not wanted for: exactly
+/// the oldest first within a body, and so across bodies to a factor of eight.
+constexpr std::array<std::uint64_t, 4> kAgesToEvict{4096, 512, 64, 0};
 
 std::string inSeconds(milliseconds time) {
   return std::to_string(std::chrono::ceil<std::chrono::seconds>(time).count()) + " s";
@@ -57,19 +36,10 @@ struct TileStream::State {
 
   std::vector<std::shared_ptr<const SceneInfo>> scenes;  ///< the last is in force
   bool sceneFromCache = false, cacheOffered = false;
-  bool sceneStale = false;    ///< the server has said that our revision is gone
   bool sceneDoubted = false;  ///< a tile was not found: the server's scene, which may be another, is asked for
-  bool bodyMissing = false;
-  std::optional<ViewOfTiles> from;  ///< where the last call of want() looked from
-  bool wantDue = false;             ///< a new revision is in force, and nobody has said yet what is wanted of it
   int sameRevisionAgain = 0, doubts = 0;
-  const BodyInfo* body = nullptr;
-
-  std::unordered_map<FacePath, Request> requests;
-  std::unordered_map<TilePipeline::Id, FacePath> orders;
-  TileResidency residency;
-  std::size_t uploading = 0, failed = 0;
-  std::uint64_t call = 0, cancelled = 0, evicted = 0;
+  std::vector<std::unique_ptr<BodyTiles>> bodies;
+  std::uint64_t cancelledBefore = 0, evictedBefore = 0;  ///< of bodies that were left
   std::string lastFailure;
 
   ~State() {
@@ -89,19 +59,33 @@ struct TileStream::State {
       loader->offerCached();
     }
     for (const TilePipeline::Lost& lost : pipeline->takeLost()) {
-      const auto found = orders.find(lost.id);
-      if (found == orders.end()) continue;
-      if (lost.gone) {
-        requests.erase(found->second);
-        if (!std::exchange(sceneStale, true)) loader->load();
-      } else {
-        requests.at(found->second).stage = Request::Stage::Failed;
-        ++failed;
-        lastFailure = lost.error.text();
-        if (lost.error.kind == ErrorKind::NotFound) doubtScene();
+      const auto body = bodyOf(lost.id);
+      if (!body) continue;
+      const bool wasStale = bodies[*body]->isStale();
+      const BodyTiles::Loss loss = bodies[*body]->takeLost(lost);
+      if (loss == BodyTiles::Loss::RevisionGone) {
+        if (!wasStale) loader->load();
+        continue;
       }
-      orders.erase(found);
+      lastFailure = lost.error.text();
+      if (loss == BodyTiles::Loss::NotFound) doubtScene();
     }
+  }
+
+  std::optional<std::size_t> bodyOf(TilePipeline::Id order) const {
+    for (std::size_t body = 0; body < bodies.size(); ++body)
+      if (bodies[body]->hasOrder(order)) return body;
+    return std::nullopt;
+  }
+
+  bool any(bool (BodyTiles::*holds)() const noexcept) const {
+    return std::ranges::any_of(bodies, [holds](const auto& body) { return ((*body).*holds)(); });
+  }
+  template <class Number>
+  Number sum(Number (BodyTiles::*of)() const noexcept) const {
+    Number total = 0;
+    for (const auto& body : bodies) total += ((*body).*of)();
+    return total;
   }
 
   milliseconds backoff(int times) const {
@@ -111,36 +95,24 @@ struct TileStream::State {
   /// A tile is not found: is there another scene? Asked at once the first time, and only that is waited for; then less
   /// and less often, however many tiles are not found, for as long as any is.
   void doubtScene() {
-    if (sceneStale || doubts > 0) return;
+    if (any(&BodyTiles::isStale) || doubts > 0) return;
     sceneDoubted = true;
     ++doubts;
     loader->load();
   }
 
   void adoptScene(SceneLoader::Arrival arrival) {
-    const std::string name = body ? body->name : "";
-    const std::string oldRevision = body ? body->revision : "";
     sceneFromCache = arrival.fromCache;
     sceneDoubted = false;
     if (scenes.empty() || scenes.back() != arrival.scene) scenes.push_back(std::move(arrival.scene));
-    if (!body) return;
-    const auto& bodies = scenes.back()->bodies;
-    const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const BodyInfo& b) { return b.name == name; });
-    const bool wasMissing = std::exchange(bodyMissing, found == bodies.end());
-    if (bodyMissing) {
-      cancelOrders();
-      return loader->load(backoff(sameRevisionAgain++));  // it may come back
-    }
-    body = &*found;
-    if (body->revision != oldRevision || wasMissing) {
-      sameRevisionAgain = doubts = 0;
-      sceneStale = false;
-      wantDue = true;
-      residency.setRevision(body->revision);
-      cancelOrders();
-      forgetFailures();
-    } else if (sceneStale) {
-      // Something between us and the server still holds the old scene. Ask again, less and less often.
+    bool renewed = false;
+    for (const auto& body : bodies) renewed = body->adopt(*scenes.back()) || renewed;
+    if (renewed) sameRevisionAgain = doubts = 0;
+    const std::size_t failed = sum(&BodyTiles::failed);
+    if (failed == 0) lastFailure.clear();
+    if (any(&BodyTiles::isMissing) || any(&BodyTiles::isStale)) {
+      // The body may come back; something between us and the server may still hold the old scene. Ask again, less and
+      // less often.
       loader->load(backoff(sameRevisionAgain++));
     } else if (doubts > 0 && failed > 0) {
       loader->load(backoff(doubts++ - 1));
@@ -149,126 +121,72 @@ struct TileStream::State {
     }
   }
 
-  void cancelOrders() {
-    for (const auto& [id, path] : orders) {
-      pipeline->cancel(id);
-      requests.erase(path);
-      ++cancelled;
+  void selectBodies(std::span<const std::size_t> indices) {
+    const std::vector<BodyInfo>& known = scenes.back()->bodies;
+    const bool same = std::ranges::equal(indices, bodies, [&](std::size_t index, const auto& body) {
+      return known.at(index).name == body->info().name;
+    });
+    if (same) {
+      for (const auto& body : bodies) body->adopt(*scenes.back());
+      return;
     }
-    orders.clear();
-  }
-
-  void forgetFailures() {
-    std::erase_if(requests, [](const auto& item) { return item.second.stage == Request::Stage::Failed; });
-    failed = 0;
-    lastFailure.clear();
-  }
-
-  void selectBody(const BodyInfo& chosen) {
-    const bool other = !body || body->name != chosen.name;
-    body = &chosen;
-    residency.setRevision(body->revision);
-    if (!other) return;
-    cancelOrders();
-    requests.clear();
-    residency.clear();
-    uploading = failed = 0;
-    sceneStale = bodyMissing = false;
+    const std::vector<std::unique_ptr<BodyTiles>> left = std::exchange(bodies, {});
+    for (const auto& body : left) {
+      body->cancelOrders();
+      cancelledBefore += body->cancelled();
+      evictedBefore += body->evicted();
+    }
+    for (const std::size_t index : indices)
+      bodies.push_back(std::make_unique<BodyTiles>(*pipeline, options.graceTime, known.at(index)));
     doubts = 0;
     lastFailure.clear();
   }
 
-  void wantOne(const WantedTile& tile, const LastWanted& now) {
-    const std::string* revision = residency.touch(tile.path, now);
-    if (revision && *revision == body->revision) return;
-    const double priority = fetchPriority(tile);
-    if (const auto found = requests.find(tile.path); found != requests.end()) {
-      Request& request = found->second;
-      request.wanted = now;
-      // A camera in motion changes every error a little in every frame; only what could change the order is passed on.
-      if (request.stage == Request::Stage::Ordered && std::abs(priority - request.priority) > 0.02) {
-        request.priority = priority;
-        pipeline->setPriority(request.order, priority);
-      }
-      return;
-    }
-    if (sceneStale || bodyMissing) return;
-    const auto order = pipeline->order(tile.path, tileTarget({body->revision, body->name, tile.path}), priority);
-    requests.emplace(tile.path, Request{Request::Stage::Ordered, order, priority, now, body->revision});
-    orders.emplace(order, tile.path);
-  }
-
-  /// Wanted now, or so recently that it may be wanted again.
-  bool stillWanted(const LastWanted& wanted, Clock::time_point now) const {
-    return wanted.call == call || (call - wanted.call < kGraceCalls && now - wanted.time < options.graceTime);
-  }
-
-  bool isHeld(const FacePath& path) const {
-    return from && staysSubdivided(path, *from, body->selection,
-                                   [this](const FacePath& other) { return residency.find(other); });
-  }
-
-  void dropUnwanted(Clock::time_point now) {
-    for (auto at = orders.begin(); at != orders.end();) {
-      Request& request = requests.at(at->second);
-      if (stillWanted(request.wanted, now) || isHeld(at->second)) {
-        if (request.wanted.call != call && request.priority < kUnwanted) {
-          request.priority += kUnwanted;
-          pipeline->setPriority(at->first, request.priority);
-        }
-        ++at;
-        continue;
-      }
-      pipeline->cancel(at->first);
-      ++cancelled;
-      requests.erase(at->second);
-      at = orders.erase(at);
-    }
-  }
-
-  std::vector<TilePtr> takeDecoded(std::size_t maxBytes) {
-    std::vector<TilePtr> tiles;
+  std::vector<ArrivedTile> takeDecoded(std::size_t maxBytes) {
+    std::vector<ArrivedTile> tiles;
     for (TilePipeline::Ready& ready : pipeline->takeReady(maxBytes)) {
-      const auto found = orders.find(ready.id);
-      if (found == orders.end()) continue;
-      requests.at(found->second).stage = Request::Stage::Uploading;
-      orders.erase(found);
-      ++uploading;
-      tiles.push_back(std::move(ready.tile));
+      const auto body = bodyOf(ready.id);
+      if (!body) continue;
+      bodies[*body]->takeDecoded(ready.id);
+      tiles.push_back({std::move(ready.tile), *body});
     }
     return tiles;
   }
 
-  void markResident(const TilePtr& tile, std::size_t gpuBytes) {
-    const auto found = requests.find(tile->metadata.path);
-    if (found == requests.end() || found->second.stage != Request::Stage::Uploading) return;  // of a body that was left
-    --uploading;
-    const ResidentTile info = residentTile(*tile, body->selection.radiusMeters);
-    residency.add(tile, info, found->second.revision, gpuBytes, found->second.wanted);
-    requests.erase(found);
+  std::size_t residentBytes() const {
+    std::size_t bytes = 0;
+    for (const auto& body : bodies) bytes += body->residency().bytes();
+    return bytes;
   }
 
-  std::vector<FacePath> evict(const std::vector<FacePath>& draw) {
-    const auto now = Clock::now();
-    const auto recent = [&](const LastWanted& wanted) { return stillWanted(wanted, now); };
-    const auto budget = static_cast<double>(options.residentBudgetBytes);
-    auto gone = residency.evict(options.residentBudgetBytes, draw, [&](const FacePath& path, const LastWanted& wanted) {
-      return recent(wanted) || isHeld(path);
-    });
-    if (static_cast<double>(residency.bytes()) > (1 + kHeldOverBudget) * budget) {
-      const auto more = residency.evict(static_cast<std::size_t>((1 + kHeldOverBudget) * budget), draw,
-                                        [&](const FacePath&, const LastWanted& wanted) { return recent(wanted); });
-      gone.insert(gone.end(), more.begin(), more.end());
-    }
-    evicted += gone.size();
+  std::vector<std::vector<FacePath>> evict(std::span<const std::vector<FacePath>> draw) {
+    std::vector<std::vector<FacePath>> gone(bodies.size());
+    evictTo(options.residentBudgetBytes, draw, true, gone);
+    const double most = (1 + kHeldOverBudget) * static_cast<double>(options.residentBudgetBytes);
+    evictTo(static_cast<std::size_t>(most), draw, false, gone);
     return gone;
+  }
+
+  /// holds: what stays by its parent's error does.
+  void evictTo(std::size_t budgetBytes, std::span<const std::vector<FacePath>> draw, bool holds,
+               std::vector<std::vector<FacePath>>& gone) {
+    static const std::vector<FacePath> kNothing;
+    for (const std::uint64_t age : kAgesToEvict) {
+      if (bodies.size() == 1 && age > 0) continue;
+      for (std::size_t k = 0; k < bodies.size(); ++k) {
+        const std::size_t own = bodies[k]->residency().bytes(), others = residentBytes() - own;
+        const std::size_t budget = budgetBytes - std::min(budgetBytes, others);
+        const auto out = bodies[k]->evict(budget, k < draw.size() ? draw[k] : kNothing, age, holds);
+        gone[k].insert(gone[k].end(), out.begin(), out.end());
+      }
+    }
   }
 
   bool idle() {
     drain();
-    if (scenes.empty() || sceneStale || sceneDoubted || wantDue) return false;
+    if (scenes.empty() || sceneDoubted || any(&BodyTiles::isStale) || any(&BodyTiles::isWantDue)) return false;
     const auto counts = pipeline->counts();
-    return counts.orders == 0 && counts.lost == 0 && uploading == 0;
+    return counts.orders == 0 && counts.lost == 0 && sum(&BodyTiles::uploading) == 0;
   }
 
   LinkState linkState(const FetchQueue::Status& net) const {
@@ -287,13 +205,15 @@ struct TileStream::State {
     }
     if (link == LinkState::Slow) return fetch->origin() + " is slow: waiting for " + inSeconds(net.longestRunning);
     if (net.retryIn.count() > 0) return fetch->origin() + " is busy: retry in " + inSeconds(net.retryIn);
-    if (scenes.empty() || sceneStale) {
+    const bool stale = any(&BodyTiles::isStale);
+    if (scenes.empty() || stale) {
       if (std::string trouble = loader->trouble(); !trouble.empty()) return trouble;
     }
-    if (sceneStale) return "the server has a new version of this body: moving over";
-    if (bodyMissing) return "the server no longer has the body " + body->name;
+    if (stale) return "the server has a new version of this body: moving over";
+    for (const auto& body : bodies)
+      if (body->isMissing()) return "the server no longer has the body " + body->info().name;
     if (!counts.trouble.empty() && counts.orders > 0) return counts.trouble;
-    if (failed > 0)
+    if (const std::size_t failed = sum(&BodyTiles::failed); failed > 0)
       return std::to_string(failed) + (failed == 1 ? " tile" : " tiles") + " cannot be had; last " + lastFailure;
     return cache ? cache->notice() : std::string();
   }
@@ -337,52 +257,65 @@ const SceneInfo* TileStream::scene() const {
   return state_->scenes.empty() ? nullptr : state_->scenes.back().get();
 }
 
-void TileStream::selectBody(std::size_t index) { state_->selectBody(state_->scenes.back()->bodies.at(index)); }
+void TileStream::selectBodies(std::span<const std::size_t> indices) { state_->selectBodies(indices); }
+void TileStream::selectBody(std::size_t index) { state_->selectBodies(std::array{index}); }
 
-const BodyInfo* TileStream::body() const noexcept { return state_->body; }
-
-void TileStream::want(const std::vector<WantedTile>& wanted, const std::optional<ViewOfTiles>& from) {
-  state_->drain();
-  if (!state_->body) return;
-  state_->from = from;
-  ++state_->call;
-  state_->wantDue = false;
-  const LastWanted now{state_->call, Clock::now()};
-  for (const WantedTile& tile : wanted) state_->wantOne(tile, now);
-  state_->dropUnwanted(now.time);
+const BodyInfo* TileStream::body(std::size_t which) const noexcept {
+  return which < state_->bodies.size() ? &state_->bodies[which]->info() : nullptr;
 }
 
-std::vector<TilePtr> TileStream::takeDecoded(std::size_t maxBytes) {
+void TileStream::want(const std::vector<WantedTile>& wanted, const std::optional<ViewOfTiles>& from, std::size_t body) {
+  state_->drain();
+  if (body < state_->bodies.size()) state_->bodies[body]->want(wanted, from);
+}
+
+std::vector<ArrivedTile> TileStream::takeDecoded(std::size_t maxBytes) {
   state_->drain();
   return state_->takeDecoded(maxBytes);
 }
 
-void TileStream::markResident(const TilePtr& tile, std::size_t gpuBytes) { state_->markResident(tile, gpuBytes); }
+void TileStream::markResident(const ArrivedTile& arrived, std::size_t gpuBytes) {
+  if (arrived.body < state_->bodies.size()) state_->bodies[arrived.body]->markResident(arrived.tile, gpuBytes);
+}
 
-std::vector<FacePath> TileStream::evict(const std::vector<FacePath>& draw) { return state_->evict(draw); }
+std::vector<std::vector<FacePath>> TileStream::evictOfAll(std::span<const std::vector<FacePath>> draw) {
+  return state_->evict(draw);
+}
+std::vector<FacePath> TileStream::evict(const std::vector<FacePath>& draw) {
+  auto gone = state_->evict({&draw, 1});
+  return gone.empty() ? std::vector<FacePath>() : std::move(gone.front());
+}
 
-const ResidentTile* TileStream::resident(const FacePath& path) const {
-  const ResidentTile* tile = known(path);
+const ResidentTile* TileStream::resident(const FacePath& path, std::size_t body) const {
+  const ResidentTile* tile = known(path, body);
   return tile && tile->drawable ? tile : nullptr;
 }
 
-const ResidentTile* TileStream::known(const FacePath& path) const { return state_->residency.find(path); }
+const ResidentTile* TileStream::known(const FacePath& path, std::size_t body) const {
+  return body < state_->bodies.size() ? state_->bodies[body]->residency().find(path) : nullptr;
+}
 
-TilePtr TileStream::tile(const FacePath& path) const { return state_->residency.mesh(path); }
+TilePtr TileStream::tile(const FacePath& path, std::size_t body) const {
+  return body < state_->bodies.size() ? state_->bodies[body]->residency().mesh(path) : nullptr;
+}
 
-std::optional<TileStream::Ground> TileStream::groundBelow(const glm::dvec3& directionBody) const {
-  const BodyInfo* body = state_->body;
-  if (!body) return std::nullopt;
-  const auto ground =
-      state_->residency.groundBelow(directionBody, body->selection.radiusMeters, body->selection.scheme);
+std::optional<TileStream::Ground> TileStream::groundBelow(const glm::dvec3& directionBody, std::size_t which) const {
+  const BodyInfo* info = body(which);
+  if (!info) return std::nullopt;
+  const auto ground = state_->bodies[which]->residency().groundBelow(directionBody, info->selection.radiusMeters,
+                                                                     info->selection.scheme);
   return ground ? std::optional(Ground{ground->heightMeters, ground->level}) : std::nullopt;
 }
 
-std::optional<double> TileStream::drawnHeightBelow(const glm::dvec3& directionBody,
-                                                   const std::vector<DrawnTile>& drawn) const {
-  const BodyInfo* body = state_->body;
-  if (!body) return std::nullopt;
-  return state_->residency.drawnHeightBelow(directionBody, body->selection.radiusMeters, drawn);
+std::optional<double> TileStream::drawnHeightBelow(const glm::dvec3& directionBody, const std::vector<DrawnTile>& drawn,
+                                                   std::size_t which) const {
+  const BodyInfo* info = body(which);
+  if (!info) return std::nullopt;
+  return state_->bodies[which]->residency().drawnHeightBelow(directionBody, info->selection.radiusMeters, drawn);
+}
+
+std::size_t TileStream::residentCount(std::size_t body) const {
+  return body < state_->bodies.size() ? state_->bodies[body]->residency().size() : 0;
 }
 
 bool TileStream::idle() const { return state_->idle(); }
@@ -398,14 +331,14 @@ StreamStatus TileStream::status() const {
   status.fetching = net.running;
   status.decoding = counts.decoding;
   status.ready = counts.ready;
-  status.resident = state_->residency.size();
-  status.failed = state_->failed;
-  status.residentBytes = state_->residency.bytes();
+  for (const auto& body : state_->bodies) status.resident += body->residency().size();
+  status.failed = state_->sum(&BodyTiles::failed);
+  status.residentBytes = state_->residentBytes();
   status.requests = net.requests;
   status.bytesReceived = net.bytesReceived;
   status.cacheHits = counts.cacheHits;
-  status.cancelled = state_->cancelled;
-  status.evicted = state_->evicted;
+  status.cancelled = state_->cancelledBefore + state_->sum(&BodyTiles::cancelled);
+  status.evicted = state_->evictedBefore + state_->sum(&BodyTiles::evicted);
   status.decodeMs = counts.decodeMs;
   status.network = state_->options.network;
   return status;

@@ -38,6 +38,10 @@ Camera cameraFromPose(const ViewPose& pose, double radiusMeters, double vertical
   camera.backward = -glm::normalize(cosPitch * ahead + sinPitch * local.up);
   camera.right = glm::normalize(cosHeading * local.east - sinHeading * local.north);
   camera.up = glm::normalize(glm::cross(camera.backward, camera.right));
+  if (pose.roll != 0) {
+    camera.right = glm::normalize(std::cos(pose.roll) * camera.right - std::sin(pose.roll) * camera.up);
+    camera.up = glm::normalize(glm::cross(camera.backward, camera.right));
+  }
   camera.verticalFieldOfView = verticalFieldOfView;
   camera.widthPixels = widthPixels;
   camera.heightPixels = heightPixels;
@@ -61,6 +65,10 @@ ViewPose poseFromCamera(const Camera& camera) noexcept {
   pose.pitch = std::atan2(climb, levelLength);
   if (levelLength < kVerticalView) level = climb < 0 ? camera.up : -camera.up;
   pose.heading = std::atan2(glm::dot(level, local.east), glm::dot(level, local.north));
+  const glm::dvec3 levelRight = std::cos(pose.heading) * local.east - std::sin(pose.heading) * local.north;
+  const glm::dvec3 levelUp = glm::cross(camera.backward, levelRight);
+  const double roll = std::atan2(-glm::dot(camera.right, levelUp), glm::dot(camera.right, levelRight));
+  if (std::abs(roll) > 0x1p-48) pose.roll = roll;
   return pose;
 }
 

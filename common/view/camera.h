@@ -26,13 +26,15 @@ struct ViewPose {
   double longitude = 0, latitude = 0;
   double altitudeMeters = 0;
   double heading = 0, pitch = 0;
+  double roll = 0;  ///< of the picture's right side, down; not 0 only after a change of body, whose level is another
 };
 
 /// Every finite pose gives a finite orthonormal camera, at the poles too (heading then counts from the meridian's
 /// direction).
 Camera cameraFromPose(const ViewPose& pose, double radiusMeters, double verticalFieldOfView, int widthPixels,
                       int heightPixels) noexcept;
-/// The inverse. At a pitch of +-90 degrees the heading is taken from the up vector.
+/// The inverse, with a roll of 0 where it is less than rounding (2^-48). At a pitch of +-90 degrees the heading is
+/// taken from the up vector.
 ViewPose poseFromCamera(const Camera& camera) noexcept;
 
 /// The same camera with a picture wider and higher by this share of it on every side, and pixels as large as before.

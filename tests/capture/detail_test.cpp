@@ -50,7 +50,7 @@ class Detail : public GlTest {
     auto target = require(RenderTarget::create(camera.widthPixels, camera.heightPixels, TargetFormat::Rgba8, samples));
     target.bind();
     renderer_->draw(camera, tiles_, {});
-    if (detail != nullptr) detail->draw(camera, {});
+    if (detail != nullptr) detail->draw(camera, {}, {});
     target.bindForReading();
     Image image = readFramebuffer(camera.widthPixels, camera.heightPixels);
     RenderTarget::bindWindow();

@@ -81,7 +81,7 @@ class Viewer {
                     [this](const FacePath& path) { return stream_->known(path); }, {.errorPixels = kErrorPixels});
     stream_->want(selection_.wanted,
                   hysteresis_ ? std::optional(ViewOfTiles{cameraAt(altitudeMeters), kErrorPixels}) : std::nullopt);
-    for (const TilePtr& tile : stream_->takeDecoded(64 << 20)) stream_->markResident(tile, kGpuBytes);
+    for (const ArrivedTile& tile : stream_->takeDecoded(64 << 20)) stream_->markResident(tile, kGpuBytes);
     for (const FacePath& path : stream_->evict(selection_.draw)) evictedTwice += evicted_.insert(path).second ? 0 : 1;
     return selection_;
   }

@@ -143,9 +143,9 @@ bool SmallViewer::waitForScene() {
 
 void SmallViewer::frame(const std::vector<WantedTile>& wanted) {
   stream_->want(wanted);
-  for (const TilePtr& tile : stream_->takeDecoded(1 << 20)) {
-    stream_->markResident(tile, kGpuBytes);
-    uploaded.insert(tile->metadata.path);
+  for (const ArrivedTile& arrived : stream_->takeDecoded(1 << 20)) {
+    stream_->markResident(arrived, kGpuBytes);
+    uploaded.insert(arrived.tile->metadata.path);
     ++uploads;
   }
   std::vector<FacePath> draw;

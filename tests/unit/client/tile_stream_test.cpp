@@ -98,7 +98,7 @@ TEST(TileStream, HandsOverWithinTheBudgetCoarsestFirst) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const auto tiles = viewer.stream().takeDecoded(1);
     ASSERT_EQ(tiles.size(), 1u) << "one, even if it is over the budget";
-    EXPECT_EQ(tiles[0]->metadata.path, wanted[i].path);
+    EXPECT_EQ(tiles[0].tile->metadata.path, wanted[i].path);
     EXPECT_FALSE(viewer.stream().idle()) << "a tile that was taken is not drawn yet";
     viewer.stream().markResident(tiles[0], 1);
   }
@@ -263,12 +263,12 @@ TEST(TileStream, KeepsTheMeshOnlyAsLongAsSomebodyElseDoes) {
   SmallViewer viewer(quickOptions(world.url()));
   ASSERT_TRUE(viewer.waitForScene());
   viewer.stream().want(chain(path("cube/0")));
-  std::vector<TilePtr> tiles;
+  std::vector<ArrivedTile> tiles;
   while ((tiles = viewer.stream().takeDecoded(1)).empty()) ASSERT_TRUE(viewer.waitForWake());
   EXPECT_FALSE(viewer.stream().resident(path("cube/0")));
   EXPECT_FALSE(viewer.stream().tile(path("cube/0")));
   viewer.stream().markResident(tiles[0], 5000);
-  EXPECT_EQ(viewer.stream().tile(path("cube/0")), tiles[0]);
+  EXPECT_EQ(viewer.stream().tile(path("cube/0")), tiles[0].tile);
   tiles.clear();
   EXPECT_FALSE(viewer.stream().tile(path("cube/0")));
   EXPECT_TRUE(viewer.stream().resident(path("cube/0")));
