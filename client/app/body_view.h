@@ -31,8 +31,8 @@ class BodyView {
   void changeLevelsOverTime(bool wanted);
   /// What is wanted from there, and from what is wanted to what is drawn; true if that is another picture.
   bool choose(const Camera& from, double allowedPixels, double seconds);
-  /// The same again from a camera that was held above what choose has drawn. What was wanted from the lower one is asked
-  /// for too, or what keeps the camera up would never come.
+  /// The same again from a camera that was held above what choose has drawn. What was wanted from the lower one is
+  /// asked for too, or what keeps the camera up would never come.
   bool chooseHigher(const Camera& from, double allowedPixels);
   /// As from so far away that there is nothing of it; true if that is another picture.
   bool hide();

@@ -10,8 +10,8 @@
 //
 // Hysteresis lives here, so that a camera that hovers at a threshold costs nothing: what is no longer wanted goes on
 // loading, behind all that is wanted, and is not evicted, while its parent's error is above half of what is allowed
-// (common/view/level_hysteresis.h); and for kGraceCalls calls of want() or graceTime, whichever ends first, for a camera
-// that turns to and fro.
+// (common/view/level_hysteresis.h); and for kGraceCalls calls of want() or graceTime, whichever ends first, for a
+// camera that turns to and fro.
 //
 // When the server says that the revision is gone, or does not find a tile and has another revision, scene() becomes
 // another scene and every tile is asked for again as it is wanted; the old ones stay resident and drawn until their
@@ -114,7 +114,8 @@ class TileStream {
   void markResident(const ArrivedTile& arrived, std::size_t gpuBytes);
   /// Drops what is over budget, least recently wanted first; never what is in draw, what was wanted just now or within
   /// the grace, nor an ancestor of what stays. So a view that needs more than the budget gets it. What stays by its
-  /// parent's error alone may take kHeldOverBudget more than the budget. The caller frees the GL objects. The budget holds for all bodies together; among several, ages count to a factor of eight. By body.
+  /// parent's error alone may take kHeldOverBudget more than the budget. The caller frees the GL objects. The budget
+  /// holds for all bodies together; among several, ages count to a factor of eight. By body.
   std::vector<std::vector<FacePath>> evictOfAll(std::span<const std::vector<FacePath>> draw);
   /// Of the only body.
   std::vector<FacePath> evict(const std::vector<FacePath>& draw);

@@ -32,8 +32,8 @@ inline constexpr std::size_t kMaxSceneBodies = 64;
 
 /// Errors: one line, complete in message: "moon.toml:4: body[0].radius: "17 parsec" has an unknown unit; allowed: mm,
 /// m, km"; field is the key path ("body[0].radius"), empty for what is no TOML. Kinds: InvalidArgument, Malformed
-/// (syntax, encoding), TooLarge (ground too steep for its body, too), Unsupported (two schemes). Bodies whose ground might
-/// touch are refused at the position of the later one.
+/// (syntax, encoding), TooLarge (ground too steep for its body, too), Unsupported (two schemes). Bodies whose ground
+/// might touch are refused at the position of the later one.
 Result<Scene> parseScene(std::string_view toml, std::string_view fileName);
 /// Errors also: Io, naming the file in message and field.
 Result<Scene> loadSceneFile(const std::filesystem::path& file);

@@ -213,6 +213,30 @@ TEST(CameraControls, ABodyHeldStillBeforeItIsReleasedIsNotThrown) {
   EXPECT_FALSE(controls.moving());
 }
 
+// Where another body becomes the one that poses are over, its level is another too.
+TEST(CameraControls, OverAnotherBodyFlightGoesOnAndThePictureRollsLevelSlowly) {
+  CameraControls controls(ViewPose{0, 0, 1e6, 0, -0.2});
+  controls.toggleMode();
+  ControlInput ahead;
+  ahead.seconds = kFrame;
+  ahead.move = {0, 0, 1};
+  for (int i = 0; i < 100; ++i) controls.advance(ahead, moonView(), flatGround);
+  const double speedBefore = controls.speedMetersPerSecond();
+  ViewPose over = controls.pose();
+  over.roll = 1.2;
+  controls.moveOver(over);
+  controls.advance(ahead, moonView(), flatGround);
+  EXPECT_NEAR(controls.speedMetersPerSecond(), speedBefore, 0.05 * speedBefore);
+  EXPECT_NEAR(controls.pose().roll, 1.2, 0.1) << "one frame turns the picture by a few degrees";
+  ControlInput rest;
+  rest.seconds = kFrame;
+  for (int i = 0; i < 100; ++i) controls.advance(rest, moonView(), flatGround);
+  EXPECT_TRUE(controls.moving()) << "still rolling";
+  for (int i = 0; i < 600; ++i) controls.advance(rest, moonView(), flatGround);
+  EXPECT_EQ(controls.pose().roll, 0);
+  EXPECT_FALSE(controls.moving());
+}
+
 TEST(CameraControls, HomeBringsBackTheFirstPose) {
   const ViewPose home{0.4, 0.3, 2e6, 0.1, -1.2};
   CameraControls controls(home);
