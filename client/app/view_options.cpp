@@ -115,6 +115,8 @@ void declareOptions(CLI::App& app, RawOptions& raw) {
       ->type_name("OUT.png");
   app.add_option("--stats", o.statsFile, "Write figures of the run")->type_name("OUT.json");
   app.add_flag("--hud", o.hud, "Show the overlay in scripted runs too");
+  app.add_flag("--wireframe", o.wireframe, "Begin with the edges of triangles alone (F2)");
+  app.add_flag("--level-colors", o.levelColors, "Begin with a colour for each level (F3)");
   app.add_option(
          "--frames", o.frames,
          "Scripted: frames to draw (default: a flight's own number; otherwise 1, with --stats 8), spread over the "

@@ -35,6 +35,7 @@ struct ViewOptions {
   std::optional<int> samples;       ///< a pixel; 1 is no multisampling; none: what suits the renderer
   std::vector<EffectKind> without;  ///< effects to leave out of the scene's
   bool headless = false, settle = false, hud = false, explain = false;
+  bool wireframe = false, levelColors = false;
   std::string captureFile;  ///< "%d" in it: one picture for each point of the flight
   std::string statsFile;
   std::string cacheFile;        ///< empty: no disk cache

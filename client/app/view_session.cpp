@@ -140,6 +140,8 @@ Result<bool> ViewSession::ready() {
   for (std::size_t which = 0; which < inView.size(); ++which) s.views.emplace_back(*s.stream, which);
   drawSettings.placement = s.options.placement.value_or(s.renderer->selfTest().chosen);
   drawSettings.transition = s.options.transition;
+  drawSettings.wireframe = s.options.wireframe;
+  drawSettings.levelColors = s.options.levelColors;
   drawSettings.samples = s.options.samples.value_or(s.renderer->samplesByDefault());
   return true;
 }

@@ -50,8 +50,7 @@ TEST_P(CoverageTest, EverySettledViewIsClosedFromTwentyCentimetresToTenThousandK
     SCOPED_TRACE(testing::Message() << "camera " << i << ": longitude " << pose.longitude << ", latitude "
                                     << pose.latitude << ", " << altitude << " m above ground, heading " << pose.heading
                                     << ", pitch " << pose.pitch);
-    TileSource source(GetParam() == Scheme::Ico ? "moon-ico"
-                                                : "moon");  // of its own: a full run would keep too many tiles
+    TileSource source(moonScene(GetParam()));  // of its own: a full run would keep too many tiles
     const Camera camera = source.cameraAboveGround(pose, kWidth, kHeight);
     const std::vector<FacePath> paths = source.settledTiles(camera, kErrorPixels);
     auto renderer = makeRenderer();

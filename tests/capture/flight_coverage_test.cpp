@@ -12,6 +12,7 @@
 
 #include "client/app/flight_plan.h"
 #include "tests/support/both_schemes.h"
+#include "tests/support/tile_source.h"
 #include "tests/support/view_processes.h"
 
 namespace terrane {
@@ -63,7 +64,7 @@ class FlightCoverage : public testing::TestWithParam<SchemeAndFlight> {
 
   static const char* flightName() { return std::get<1>(GetParam()); }
 
-  const RunningServer server_{std::get<0>(GetParam()) == Scheme::Ico ? "moon-ico" : "moon"};
+  const RunningServer server_{moonScene(std::get<0>(GetParam()))};
   const TemporaryFolder folder_;
 };
 

@@ -16,10 +16,10 @@ Window& GlTest::window() { return **sharedWindow(); }
 
 TileSource& GlTest::moon(Scheme scheme) {
   if (scheme == Scheme::Ico) {
-    static TileSource triangles("moon-ico");
+    static TileSource triangles(moonScene(Scheme::Ico));
     return triangles;
   }
-  static TileSource squares("moon");
+  static TileSource squares(moonScene(Scheme::Cube));
   return squares;
 }
 

@@ -44,7 +44,7 @@ class PopTest : public GlTest, public testing::WithParamInterface<SchemeAndFligh
 };
 
 TEST_P(PopTest, NoChangeOfTheDrawnSetIsSeenThoughTilesComeLate) {
-  TileSource tiles(std::get<0>(GetParam()) == Scheme::Ico ? "moon-ico" : "moon");
+  TileSource tiles(moonScene(std::get<0>(GetParam())));
   const Pops morphed = fly(tiles, Transition::Morph, frameCount());
   EXPECT_GE(morphed.changes, 8);
   EXPECT_LE(morphed.worstRms, 1.0);

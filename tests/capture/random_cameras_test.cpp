@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/support/both_schemes.h"
+#include "tests/support/tile_source.h"
 #include "tests/support/view_processes.h"
 
 namespace terrane {
@@ -41,7 +42,7 @@ class RandomCameras : public testing::TestWithParam<Scheme> {};
 TEST_P(RandomCameras, ShowNoHoleAtAnyHeightAndPitch) {
   const std::uint64_t count = setting("TERRANE_CAMERAS", 12), seed = setting("TERRANE_SEED", 20260711);
   fmt::print("cameras {}, seed {}\n", count, seed);
-  const RunningServer server(GetParam() == Scheme::Ico ? "moon-ico" : "moon");
+  const RunningServer server(moonScene(GetParam()));
   ASSERT_FALSE(server.url.empty()) << server.process->errors();
   const TemporaryFolder folder;
   std::ofstream(folder / "cameras.txt") << randomFlight(seed, count);

@@ -247,6 +247,8 @@ TEST(ViewOptions, HelpExplainsEveryFlagAndEveryKey) {
                            "--bandwidth",
                            "--explain",
                            "--hud",
+                           "--wireframe",
+                           "--level-colors",
                            "--version",
                            "Exit status",
                            "F1",

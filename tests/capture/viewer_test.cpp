@@ -99,6 +99,29 @@ TEST_F(Viewer, AFlightIsFlownWithTheTransitionThatIsAskedFor) {
   }
 }
 
+TEST_F(Viewer, WireframeAndLevelColoursAreOtherPicturesOfTheSameView) {
+  const std::vector<std::string> camera{"--camera", "-10,8,400000,0,-60", "--settle", "--capture"};
+  const auto pictureOf = [&](const char* file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = camera;
+    arguments.push_back(folder_ / file);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(view(arguments).status, 0);
+    const auto image = readPng(folder_ / file);
+    return image ? *image : Image{};
+  };
+  const auto darkShare = [](const Image& image) {
+    std::size_t dark = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+      dark += image.rgb[i] < 12 && image.rgb[i + 1] < 12 && image.rgb[i + 2] < 12 ? 1u : 0u;
+    return static_cast<double>(dark) / (static_cast<double>(image.rgb.size()) / 3);
+  };
+  const Image plain = pictureOf("p.png", {}), wires = pictureOf("w.png", {"--wireframe", "--error", "64"}),
+              levels = pictureOf("l.png", {"--level-colors"});
+  EXPECT_GT(darkShare(wires), darkShare(plain) + 0.3) << "between the edges it is dark";
+  EXPECT_LT(darkShare(levels), darkShare(plain) + 0.01);
+  EXPECT_GT(rmsDifference(plain, levels), 10);
+}
+
 TEST_F(Viewer, TheSameCameraGivesTheSamePictureTwice) {
   const std::vector<std::string> camera{"--camera", "-10,8,400,30,-30", "--above-ground", "--settle", "--capture"};
   auto first = camera, second = camera;

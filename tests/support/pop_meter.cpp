@@ -173,7 +173,7 @@ void PopMeter::compare(const Camera& camera, const std::vector<DrawnTile>& befor
 
 /// A few of the tiles that are missing: what is in the picture before what lies beside it, as the viewer asks.
 void PopMeter::loadLate(const Camera& camera, const TileSelection& selection) {
-  int arriving = kPopTilesPerFrame;
+  int arriving = popTilesPerFrame(moon_.selection().scheme);
   for (const auto& wanted : {selection.wanted, select(widened(camera, kShareAhead)).wanted})
     for (const WantedTile& tile : wanted) {
       if (isThere(tile.path)) continue;

@@ -28,8 +28,8 @@ std::string_view popFlightName(PopFlight flight) noexcept;
 
 inline constexpr double kPopFrameSeconds = 0.03;
 inline constexpr int kPopFlightFrames = 2000;  ///< of a whole flight
-/// That arrive; on the ground fewer than the view asks for.
-inline constexpr int kPopTilesPerFrame = 3;
+/// That arrive, some 55 KiB; on the ground fewer than the view asks for.
+constexpr int popTilesPerFrame(Scheme scheme) noexcept { return scheme == Scheme::Cube ? 3 : 5; }
 
 struct Pops {
   int frames = 0;

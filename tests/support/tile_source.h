@@ -20,6 +20,8 @@ struct TestScene {
   std::vector<EffectCall> effects;
 };
 TestScene shippedScene(const std::string& name);
+/// The shipped scene of the Moon on tiles of a scheme.
+constexpr const char* moonScene(Scheme scheme) noexcept { return scheme == Scheme::Cube ? "moon" : "moon-ico"; }
 /// The Moon's sunlight without what else is drawn over its tiles.
 std::vector<EffectCall> moonSunlight();
 

@@ -48,8 +48,10 @@ std::array<double, kTransitions.size()> timeRatios(PopMeter& meter, const std::v
   return sums;
 }
 
-Outcomes measure(PopFlight flight, const Size& size, const std::function<void()>& frameDone) {
-  TileSource moon("moon");
+constexpr std::array kSchemes{Scheme::Cube, Scheme::Ico};
+
+Outcomes measure(Scheme scheme, PopFlight flight, const Size& size, const std::function<void()>& frameDone) {
+  TileSource moon(moonScene(scheme));
   Outcomes outcomes;
   for (std::size_t i = 0; i < kTransitions.size(); ++i) {
     PopMeter meter(moon, flight, kTransitions[i], size.widthPixels, size.heightPixels);
@@ -92,7 +94,8 @@ Report run(const Settings& settings, Progress& progress) {
   if (auto report = whyNotDrawn()) return *report;
   const Size size = settings.quick ? Size{320, 180, 40, 2, 3} : Size{640, 360, 120, 3, 5};
   Report report;
-  report.columns = {{"flight", "flight"},
+  report.columns = {{"scheme", "tiles"},
+                    {"flight", "flight"},
                     {"transition", "change of level"},
                     {"frames", "frames"},
                     {"changes", "changes of the drawn set"},
@@ -105,26 +108,32 @@ Report run(const Settings& settings, Progress& progress) {
                     {"timeRatioToNone", "time of a frame / that of none"}};
   int framesDone = 0;
   const auto frameDone = [&] {
-    progress.at(++framesDone /
-                static_cast<double>(kPopFlights.size() * kTransitions.size() * static_cast<std::size_t>(size.frames)));
+    progress.at(++framesDone / static_cast<double>(kSchemes.size() * kPopFlights.size() * kTransitions.size() *
+                                                   static_cast<std::size_t>(size.frames)));
   };
   std::vector<Outcomes> flights;
-  for (const PopFlight flight : kPopFlights) {
-    flights.push_back(measure(flight, size, frameDone));
+  const auto addRows = [&](Scheme scheme, PopFlight flight) {
     for (std::size_t i = 0; i < kTransitions.size(); ++i) {
       const auto& [pops, timeRatio] = flights.back()[i];
-      report.rows.push_back({std::string(popFlightName(flight)), std::string(transitionName(kTransitions[i])),
-                             std::int64_t{pops.frames}, std::int64_t{pops.changes}, pops.worstRms, pops.medianRms,
-                             pops.worstPerMillion, static_cast<double>(pops.tiles) / pops.frames,
-                             static_cast<std::int64_t>(pops.hurried + pops.jumps),
-                             static_cast<std::int64_t>(pops.uncovered), timeRatio});
+      report.rows.push_back(
+          {std::string(schemeName(scheme)), std::string(popFlightName(flight)),
+           std::string(transitionName(kTransitions[i])), std::int64_t{pops.frames}, std::int64_t{pops.changes},
+           pops.worstRms, pops.medianRms, pops.worstPerMillion, static_cast<double>(pops.tiles) / pops.frames,
+           static_cast<std::int64_t>(pops.hurried + pops.jumps), static_cast<std::int64_t>(pops.uncovered), timeRatio});
+    }
+  };
+  for (const Scheme scheme : kSchemes) {
+    for (const PopFlight flight : kPopFlights) {
+      flights.push_back(measure(scheme, flight, size, frameDone));
+      addRows(scheme, flight);
     }
   }
   report.findings = {findingOf(Transition::Morph, "Morphed", flights),
                      findingOf(Transition::Blend, "Blended by alpha, each level with its skirts", flights),
                      findingOf(Transition::None, "At once, with skirts", flights),
-                     fmt::format("Frames are {:.0f} ms apart, and {} tiles come a frame. {}", 1000 * kPopFrameSeconds,
-                                 kPopTilesPerFrame, picturesText(size.widthPixels, size.heightPixels))};
+                     fmt::format("Frames are {:.0f} ms apart, and {} square or {} triangular tiles come a frame. {}",
+                                 1000 * kPopFrameSeconds, popTilesPerFrame(Scheme::Cube), popTilesPerFrame(Scheme::Ico),
+                                 picturesText(size.widthPixels, size.heightPixels))};
   return report;
 }
 

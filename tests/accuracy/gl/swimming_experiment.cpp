@@ -27,16 +27,20 @@ Report run(const Settings& settings, Progress& progress) {
   const std::span<const Flight> flights =
       settings.quick ? std::span<const Flight>(kQuickFlights) : std::span<const Flight>(kFlights);
   Report report;
-  report.columns = {{"heightMeters", "camera above the ground, m"},
+  report.columns = {{"scheme", "tiles"},
+                    {"heightMeters", "camera above the ground, m"},
                     {"coordinates", "texture coordinates"},
                     {"frames", "frames"},
                     {"wavelengthMeters", "wavelength asked, m"},
                     {"worstPixels", "worst, pixels off the ground"},
                     {"medianPixels", "median, pixels"}};
-  TileSource moon("moon");
+  std::array sources{TileSource(moonScene(Scheme::Cube)), TileSource(moonScene(Scheme::Ico))};
   Span byOctave;
   double floatAtHalfAMeter = 0;
-  for (std::size_t i = 0; i < flights.size(); ++i) {
+  const std::size_t runs = sources.size() * flights.size();
+  for (std::size_t flown = 0; flown < runs; ++flown) {
+    const std::size_t i = flown % flights.size();
+    TileSource& moon = sources[flown / flights.size()];
     for (const TextureCoordinates coordinates : {TextureCoordinates::ByOctave, TextureCoordinates::Float32}) {
       const bool control = coordinates == TextureCoordinates::Float32;
       const auto swim =
@@ -45,13 +49,13 @@ Report run(const Settings& settings, Progress& progress) {
                                    .coordinates = coordinates});
       if (!swim) return notRun(swim.error());
       if (!control) byOctave.include(swim->worstPixels);
-      if (control && flights[i].heightMeters == 0.5) floatAtHalfAMeter = swim->worstPixels;
-      report.rows.push_back({flights[i].heightMeters,
+      if (control && flights[i].heightMeters == 0.5) floatAtHalfAMeter = std::max(floatAtHalfAMeter, swim->worstPixels);
+      report.rows.push_back({std::string(schemeName(moon.selection().scheme)), flights[i].heightMeters,
                              std::string(control ? "float32 in the body" : "by octave from the camera (Terrane)"),
                              static_cast<std::int64_t>(swim->frames), swim->wavelengthMeters, swim->worstPixels,
                              swim->medianPixels});
     }
-    progress.at(static_cast<double>(i + 1) / static_cast<double>(flights.size()));
+    progress.at(static_cast<double>(flown + 1) / static_cast<double>(runs));
   }
   report.plots = {{"Texture off the ground over the camera's height", "heightMeters", "worstPixels", "coordinates"}};
   report.findings = {
