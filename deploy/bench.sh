@@ -14,7 +14,7 @@ for argument in "$@"; do
 done
 deploy/install.sh >&2
 cmake --preset release >&2
-cmake --build --preset release --target terrane-server terrane-view terrane-accuracy bench_tile_build bench_viewer bench_effects >&2
+cmake --build --preset release --target terrane-server terrane-view terrane-accuracy bench_tile_build bench_planets bench_viewer bench_effects >&2
 bin=build/release/bin
 tiles=25 rounds=5 seconds=4
 $quick && tiles=5 rounds=1 seconds=1
@@ -26,6 +26,10 @@ report=$work/report.md
   echo "**Building a tile**, by level, beside what stock Draco (edgebreaker, speed 7, 16 bits) alone takes for the same mesh:"
   echo
   "$bin/bench_tile_build" --tiles "$tiles"
+  echo
+  echo "**Who builds the planets**: a first whole view of several bodies (scene \`planets\`), by one thread a body and by tile on one pool:"
+  echo
+  "$bin/bench_planets" --rounds "$($quick && echo 3 || echo 15)"
   echo
   echo "**Serving a cached tile**, beside nginx serving the same file:"
   echo

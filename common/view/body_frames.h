@@ -10,9 +10,9 @@ namespace terrane {
 
 /// The same camera in the frame of another body: `from` and `to` are the centres in the scene's frame, metres. Along
 /// each axis the position is off by at most 2^-53 (|from - to| + |result|), by a rounding of each of its two sums:
-/// wherever in the scene the two bodies lie, only how far they are apart counts. The altitude is off by that over all
-/// axes and three roundings of the distance, 2^-51 of it. With the body that it is nearest to as `from`, both are below
-/// 2^-50 of the distance to the other's ground: a billionth of a pixel. Equal centres give the position unchanged.
+/// wherever in the scene the two bodies lie, only how far they are apart counts. That is no more than 2^-52 of the
+/// camera's distances from both centres together, nanometres between planets; the altitude is off by that over all axes
+/// and by three roundings, 2^-51 of the distance to the centre. Equal centres give the position unchanged.
 Camera cameraOverOther(const Camera& camera, const glm::dvec3& fromScene, const glm::dvec3& toScene,
                        double toRadiusMeters) noexcept;
 

@@ -95,7 +95,7 @@ TEST(BadNetwork, ABadSceneIsTheServersAndSaysWhatIsWrong) {
 
 TEST(BadNetwork, AnUnknownEffectIsNamedOnceAndNoReasonToStop) {
   SceneInfo scene{"x", "", {}, {}};
-  scene.bodies.push_back({"moon", "0123456789abcdef", {Scheme::Cube}, 64, {}});
+  scene.bodies.push_back({"moon", "0123456789abcdef", {Scheme::Cube}, 64, {}, {}});
   scene.bodies[0].selection.radiusMeters = scene.bodies[0].selection.occluderRadiusMeters = 1000;
   scene.bodies[0].selection.geometricErrorMeters = {1000};
   std::string text = writeSceneJson(scene);

@@ -90,8 +90,9 @@ TEST_F(SeveralBodiesTest, EveryBodyOfTheShippedSceneIsWhereGeometryPutsItAndWhol
         mustShow = mustShow || off < 0.95 * body.radiusMeters - pixels;
         discPixels[k] += off < body.radiusMeters;
       }
-      if (mustShow) ASSERT_FALSE(isSky(image, x, y)) << x << ", " << y;
-      if (!mayShow) ASSERT_TRUE(isSky(image, x, y)) << x << ", " << y;
+      if (mustShow || !mayShow) {
+        ASSERT_EQ(isSky(image, x, y), !mayShow) << x << ", " << y;
+      }
     }
   }
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) EXPECT_GT(discPixels[k], 40) << scene.bodies[k].name;
@@ -176,8 +177,10 @@ TEST_F(SeveralBodiesTest, AChangeOfAnchorDoesNotChangeThePicture) {
   Camera camera;
   camera.positionBody = pebble - 2000.0 * towards;
   camera.altitudeMeters = glm::length(camera.positionBody) - scene.bodies[0].radiusMeters;
-  camera.backward = -towards;
-  camera.right = glm::normalize(glm::cross(towards, glm::normalize(camera.positionBody)));
+  // A little to the side: the planet's level is not the pebble's.
+  const glm::dvec3 up = glm::normalize(camera.positionBody);
+  camera.backward = -glm::normalize(towards + 0.15 * glm::normalize(glm::cross(towards, up)));
+  camera.right = glm::normalize(glm::cross(up, camera.backward));
   camera.up = glm::cross(camera.backward, camera.right);
   const RenderTarget target = require(RenderTarget::create(kWidth, kHeight));
   const auto draw = [&] {
@@ -193,17 +196,17 @@ TEST_F(SeveralBodiesTest, AChangeOfAnchorDoesNotChangeThePicture) {
   ASSERT_TRUE(session->anchorNearest());
   EXPECT_EQ(session->body().name, "pebble");
   EXPECT_FALSE(session->anchorNearest()) << "it is the nearest now";
-  EXPECT_NE(session->pose().roll, 0);
+  EXPECT_GT(std::abs(session->pose().roll), 0.5) << "the other body's level is another";
   view.pose = session->pose();
   settle(*session, view);
   const Image after = draw();
-  // A billionth of a pixel moves no more than an edge's pixel here and there.
+  // Nanometres move no more than an edge's pixel here and there.
   std::size_t differing = 0, lit = 0;
   for (std::size_t i = 0; i < before.rgb.size(); i += 3) {
     differing += std::abs(int{before.rgb[i]} - int{after.rgb[i]}) > 2;
     lit += before.rgb[i] > 40;
   }
-  EXPECT_GT(lit, 20'000u) << "there is something to see";
+  EXPECT_GT(lit, 10'000u) << "there is something to see";
   EXPECT_LT(differing, 20u);
   session->anchorFirst();
   EXPECT_EQ(session->body().name, "planet");

@@ -19,9 +19,8 @@ std::vector<EffectCall> moonSunlight() {
   return effects;
 }
 
-TileSource::TileSource(const std::string& sceneName)
-    : builder_(shippedScene(sceneName).body, WireSettings{}, bestSimdPath()),
-      field_(makeHeightField(builder_.body(), bestSimdPath())) {}
+TileSource::TileSource(const Body& body)
+    : builder_(body, WireSettings{}, bestSimdPath()), field_(makeHeightField(builder_.body(), bestSimdPath())) {}
 
 std::shared_ptr<const Tile> TileSource::tile(const FacePath& path) {
   std::shared_ptr<const Tile>& slot = tiles_[path];

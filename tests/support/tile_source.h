@@ -28,7 +28,9 @@ std::vector<EffectCall> moonSunlight();
 /// The tiles of one body, built on demand and kept.
 class TileSource {
  public:
-  explicit TileSource(const std::string& sceneName);
+  explicit TileSource(const Body& body);
+  /// Of the scene's first body.
+  explicit TileSource(const std::string& sceneName) : TileSource(shippedScene(sceneName).body) {}
 
   const TileBuilder& builder() const { return builder_; }
   const SelectionBody& selection() const { return builder_.info().selection; }
