@@ -118,7 +118,7 @@ bool BodyView::request(const Camera& from, double allowedPixels, const std::opti
     return stream_.resident(tile.path, index_) == nullptr;
   }));
   if (ahead && (groundKnown || !ground->first)) addBesidePicture(from, allowedPixels, named, wanted);
-  stream_.want(wanted, ViewOfTiles{from, allowedPixels}, index_);
+  stream_.want(wanted, index_, ViewOfTiles{from, allowedPixels});
   return groundKnown;
 }
 

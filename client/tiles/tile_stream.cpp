@@ -264,7 +264,7 @@ const BodyInfo* TileStream::body(std::size_t which) const noexcept {
   return which < state_->bodies.size() ? &state_->bodies[which]->info() : nullptr;
 }
 
-void TileStream::want(const std::vector<WantedTile>& wanted, const std::optional<ViewOfTiles>& from, std::size_t body) {
+void TileStream::want(const std::vector<WantedTile>& wanted, std::size_t body, const std::optional<ViewOfTiles>& from) {
   state_->drain();
   if (body < state_->bodies.size()) state_->bodies[body]->want(wanted, from);
 }

@@ -104,8 +104,8 @@ class TileStream {
 
   /// Once a frame for every body: what is wanted of it now, coarsest first. Queued and running requests for anything
   /// else of it are cancelled. from: where it is wanted from; without it there is no holding by error, only the grace.
-  void want(const std::vector<WantedTile>& wanted, const std::optional<ViewOfTiles>& from = std::nullopt,
-            std::size_t body = 0);
+  void want(const std::vector<WantedTile>& wanted, std::size_t body = 0,
+            const std::optional<ViewOfTiles>& from = std::nullopt);
   /// Decoded tiles to upload now, at most about maxBytes of them (at least one if any is ready), coarsest first.
   std::vector<ArrivedTile> takeDecoded(std::size_t maxBytes);
   /// The tile is on the GPU and may be drawn; if it was resident before, it takes that one's place. gpuBytes count

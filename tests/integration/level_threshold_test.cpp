@@ -79,7 +79,7 @@ class Viewer {
     selection_ =
         selectTiles(cameraAt(altitudeMeters), stream_->body()->selection,
                     [this](const FacePath& path) { return stream_->known(path); }, {.errorPixels = kErrorPixels});
-    stream_->want(selection_.wanted,
+    stream_->want(selection_.wanted, 0,
                   hysteresis_ ? std::optional(ViewOfTiles{cameraAt(altitudeMeters), kErrorPixels}) : std::nullopt);
     for (const ArrivedTile& tile : stream_->takeDecoded(64 << 20)) stream_->markResident(tile, kGpuBytes);
     for (const FacePath& path : stream_->evict(selection_.draw)) evictedTwice += evicted_.insert(path).second ? 0 : 1;
