@@ -79,7 +79,8 @@ std::string wrapped(std::string_view text) {
 void declareOptions(CLI::App& app, RawOptions& raw) {
   ViewOptions& o = raw.options;
   app.add_option("--server", o.serverUrl, "Where the server is, e.g. http://127.0.0.1:8080")->type_name("URL");
-  app.add_option("--body", o.body, "Which of the scene's bodies (default: the first)")->type_name("NAME");
+  app.add_option("--body", o.body, "Which of the scene's bodies --camera and --flight are over (default: the first)")
+      ->type_name("NAME");
   app.add_option(
          "--camera", raw.camera,
          "Degrees and metres above the reference sphere; heading from north clockwise (default 0), pitch 0 level, -90 "

@@ -1,12 +1,31 @@
 #include "client/render/body_picture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace terrane {
 namespace {
 
 constexpr double kReachMargin = 1 + 0x1p-8;
+
+constexpr int kPixelsAround = 2;
+
+struct Span {
+  int first = 0, count = 0;
+};
+
+/// Along one axis of the picture: from where the planes touch the sphere that hold the camera and the other axis.
+Span spanOf(double aside, double ahead, double radius, double pixelsPerSlope, int pixels) {
+  const double spread = radius * std::sqrt(aside * aside + (ahead - radius) * (ahead + radius));
+  const double scale = pixelsPerSlope / ((ahead - radius) * (ahead + radius));
+  const auto pixel = [&](double slope) {
+    return static_cast<int>(std::clamp(std::floor(slope * scale + 0.5 * pixels), -1.0 * kPixelsAround, 1.0 * pixels));
+  };
+  const int first = std::max(pixel(aside * ahead - spread) - kPixelsAround, 0);
+  const int last = std::min(pixel(aside * ahead + spread) + kPixelsAround, pixels - 1);
+  return {first, std::max(last - first + 1, 0)};
+}
 
 double power(const BodyPicture& picture) {
   const double distance = glm::length(picture.camera.positionBody);
@@ -19,6 +38,15 @@ std::vector<BodyPicture> nearestFirst(std::span<const BodyPicture> bodies) {
   std::vector<BodyPicture> ordered(bodies.begin(), bodies.end());
   std::ranges::stable_sort(ordered, {}, power);
   return ordered;
+}
+
+PixelRectangle spherePixels(const Camera& camera, double radiusMeters) noexcept {
+  const glm::dvec3 centre = viewRotation(camera) * -camera.positionBody;
+  const double ahead = -centre.z;
+  if (!(ahead > radiusMeters)) return {0, 0, camera.widthPixels, camera.heightPixels};
+  const Span across = spanOf(centre.x, ahead, radiusMeters, pixelsPerRadian(camera), camera.widthPixels);
+  const Span up = spanOf(centre.y, ahead, radiusMeters, pixelsPerRadian(camera), camera.heightPixels);
+  return {across.first, up.first, across.count, up.count};
 }
 
 std::vector<DrawnTile> asTheyAre(std::span<const FacePath> paths) {

@@ -24,6 +24,14 @@ struct BodyPicture {
 /// camera's power, distance^2 - radius^2, for the plane in which two powers are equal parts the two spheres.
 std::vector<BodyPicture> nearestFirst(std::span<const BodyPicture> bodies);
 
+/// Pixels of a picture, from its lower left corner.
+struct PixelRectangle {
+  int left = 0, bottom = 0, width = 0, height = 0;
+};
+/// Holds every pixel of a sphere around the camera's body, and two more around them; the whole picture for a sphere
+/// that is not all ahead of the camera.
+PixelRectangle spherePixels(const Camera& camera, double radiusMeters) noexcept;
+
 /// Tiles as they are, between no levels.
 std::vector<DrawnTile> asTheyAre(std::span<const FacePath> paths);
 /// The same cut with the tiles that are in between as their parents' surfaces.

@@ -33,6 +33,15 @@ const char* placementDefine(Placement placement) {
 
 }  // namespace
 
+glm::vec3 levelTint(int level) noexcept {
+  const float hue = std::fmod(static_cast<float>(level) * 0.618034f, 1.0f) * 6.0f;
+  const auto channel = [hue](float offset) {
+    const float k = std::fmod(offset + hue, 6.0f);
+    return 1.0f - 0.65f * std::clamp(std::min(k, 4.0f - k), 0.0f, 1.0f);
+  };
+  return {channel(5.0f), channel(3.0f), channel(1.0f)};
+}
+
 float displayExposure() noexcept { return std::pow(kExposure * kColorScale, static_cast<float>(1 / kDisplayGamma)); }
 
 Result<TileProgram> TileProgram::build(const TileVariant& variant, const EffectList& effects,

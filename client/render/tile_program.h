@@ -27,6 +27,9 @@ inline constexpr int kPlacementCount = 4;
 /// Light on the display of what reflects kColorScale in full light, on the display's curve.
 float displayExposure() noexcept;
 
+/// Hues a golden angle apart, so that neighbouring levels differ.
+glm::vec3 levelTint(int level) noexcept;
+
 struct TileVariant {
   Placement placement = Placement::Integer;
   TilePurpose purpose = TilePurpose::Shaded;

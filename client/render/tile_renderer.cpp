@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <map>
@@ -30,16 +29,6 @@ namespace {
 /// screen tiles would pay for it.)
 constexpr int kTilesPerFlush = 8;
 constexpr int kSamplesOnGpu = 4;
-
-/// Hues a golden angle apart, so that neighbouring levels differ.
-glm::vec3 levelTint(int level) {
-  const float hue = std::fmod(static_cast<float>(level) * 0.618034f, 1.0f) * 6.0f;
-  const auto channel = [hue](float offset) {
-    const float k = std::fmod(offset + hue, 6.0f);
-    return 1.0f - 0.65f * std::clamp(std::min(k, 4.0f - k), 0.0f, 1.0f);
-  };
-  return {channel(5.0f), channel(3.0f), channel(1.0f)};
-}
 
 /// Of the array that is bound. Returns the number of triangles.
 std::size_t drawList(const IndexList& list) {
@@ -219,7 +208,7 @@ struct TileRenderer::State {
     if (settings.effectPasses && !settings.wireframe)
       for (std::size_t k = 0; k < bodies.size(); ++k)
         if (!ordered[k].empty() || bodies.size() == 1)
-          drawPasses(bodies[k].camera, ordered[k], passBodyOf(bodies[k], bodies.size() == 1), settings, stats);
+          drawPasses(bodies[k], bodies.size() == 1, ordered[k], settings, stats);
     return stats;
   }
 
@@ -236,15 +225,21 @@ struct TileRenderer::State {
                 });
   }
 
-  void drawPasses(const Camera& camera, std::span<const TileDraw> ordered, const PassBody& body,
-                  const DrawSettings& settings, DrawStats& stats) {
+  void drawPasses(const BodyPicture& body, bool alone, std::span<const TileDraw> ordered, const DrawSettings& settings,
+                  DrawStats& stats) {
     if (passes.empty()) return;
     const TilePass state(capabilities, settings.wireframe, TilePass::Start::Kept);
+    if (!alone) {  // what a pass does for every pixel, it need not do for another body's
+      const PixelRectangle disc = spherePixels(body.camera, body.highestRadiusMeters);
+      glScissor(disc.left, disc.bottom, disc.width, disc.height);
+      glEnable(GL_SCISSOR_TEST);
+    }
     for (const auto& pass : passes) {
-      const PassStats drawn = pass->draw(camera, ordered, body);
+      const PassStats drawn = pass->draw(body.camera, ordered, passBodyOf(body, alone));
       stats.triangles += drawn.triangles;
       stats.drawCalls += drawn.drawCalls;
     }
+    glDisable(GL_SCISSOR_TEST);
   }
 
   /// Mixes the parents' surfaces over the tiles' own, which were just drawn; nothing to do where no tile is in between.
