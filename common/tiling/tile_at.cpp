@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "common/numerics/strict_math.h"
 #include "common/tiling/cube_sphere.h"
 #include "common/tiling/ico_sphere.h"
 

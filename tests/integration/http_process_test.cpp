@@ -174,7 +174,7 @@ TEST(ServerProgram, HelpExplainsEveryFlag) {
     EXPECT_THAT(help.standardOutput, HasSubstr(flag));
   EXPECT_THAT(help.standardOutput, HasSubstr("256MiB"));
   EXPECT_THAT(help.standardOutput, HasSubstr("Exit status"));
-  EXPECT_THAT(help.standardOutput, HasSubstr("moon, smooth"));
+  EXPECT_THAT(help.standardOutput, HasSubstr("moon-ico, moon, planets, smooth"));
   const FinishedProcess version = runServer({"--version"});
   EXPECT_EQ(version.exitStatus, 0);
   EXPECT_THAT(version.standardOutput, testing::MatchesRegex("terrane-server [0-9]+\\.[0-9]+\\.[0-9]+\n"));
