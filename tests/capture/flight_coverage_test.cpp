@@ -1,5 +1,5 @@
 // Whole flights, as their users fly them: no pixel of any frame that must show ground shows background, and no skirt is
-// drawn; wholly loaded, and with tiles that come late over a bad network. TERRANE_FLIGHT_FRAMES: of each flight (100).
+// drawn; wholly loaded, and with tiles that come late over a bad network. TERRANE_FLIGHT_FRAMES: of each flight (60).
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ constexpr double kShortestStreamSeconds = 15, kFramesPerSecond = 30;
 
 int frameCount() {
   const char* value = std::getenv("TERRANE_FLIGHT_FRAMES");  // NOLINT(concurrency-mt-unsafe): one thread
-  return value == nullptr ? 100 : std::max(2, std::atoi(value));
+  return value == nullptr ? 60 : std::max(2, std::atoi(value));
 }
 
 using SchemeAndFlight = std::tuple<Scheme, const char*>;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kWidth = 640, kHeight = 360;
 /// Of the control, which pops at its first changes.
-constexpr int kControlFrames = 40;
+constexpr int kControlFrames = 100;
 
 int frameCount() {
   const char* text = std::getenv("TERRANE_POP_FRAMES");  // NOLINT(concurrency-mt-unsafe): one thread
