@@ -147,7 +147,7 @@ TEST_P(GrainFieldOfSchemes, NoTwoOfAClassShareTheGroundEvenOverFaceEdges) {
     };
     std::vector<Placed> own, beside;
     nearBorder(tile, own);
-    for (const FacePath& neighbour : tilesAround(tile).tiles()) nearBorder(neighbour, beside);
+    for (const FacePath& neighbour : tilesAround(tile)) nearBorder(neighbour, beside);
     for (const Placed& a : own)
       for (const Placed& b : beside) {
         const double apart = glm::length(a.position - b.position) / (a.radius + b.radius);
