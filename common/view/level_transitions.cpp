@@ -101,7 +101,7 @@ void LevelTransitions::leaveAndEnter(const Wanted& wanted, const Question& canMo
   for (const FacePath& path : wanted.tiles()) {
     if (cut_.leafOver(path)) continue;
     if (!cut_.isRefined(path)) {
-      enter(path);
+      if (!enterFiner(path, canMorph, mayBeSeen)) enter(path);
       ++counts_.entered;
     } else if (!fillGaps(path, canMorph, mayBeSeen)) {
       mergeAtOnce(path);
@@ -125,6 +125,29 @@ bool LevelTransitions::fillGaps(const FacePath& above, const Question& canMorph,
     }
   }
   return true;
+}
+
+/// A tile beside others that are drawn two levels finer, or more, comes in by its children, as fine as they ask for.
+/// False if it has no such neighbours, or a child that may be seen is not there.
+bool LevelTransitions::enterFiner(const FacePath& path, const Question& canMorph, const Question& mayBeSeen) {
+  if (!muchFinerBeside(path)) return false;
+  for (int digit = 0; digit < 4; ++digit)
+    if (mayBeSeen(path.child(digit)) && !canMorph(path.child(digit))) return false;
+  for (int digit = 0; digit < 4; ++digit) {
+    const FacePath child = path.child(digit);
+    if (mayBeSeen(child) && !enterFiner(child, canMorph, mayBeSeen)) cut_.insert(child, 0);
+  }
+  return true;
+}
+
+/// Whether a tile that touches this one is two or more levels finer.
+bool LevelTransitions::muchFinerBeside(const FacePath& path) const {
+  bool found = false;
+  for (int digit = 0; digit < 4 && !found; ++digit)
+    forEachNeighbour(path.child(digit), [&](const FacePath& neighbour) {
+      found = found || (neighbour.parent() != path && cut_.isRefined(neighbour));
+    });
+  return found;
 }
 
 /// A tile comes in as it is wanted, or coarser where what is drawn beside it is not that far yet.

@@ -53,6 +53,8 @@ class LevelTransitions {
   class Wanted;
   void leaveAndEnter(const Wanted& wanted, const Question& canMorph, const Question& mayBeSeen);
   bool fillGaps(const FacePath& above, const Question& canMorph, const Question& mayBeSeen);
+  bool enterFiner(const FacePath& path, const Question& canMorph, const Question& mayBeSeen);
+  bool muchFinerBeside(const FacePath& path) const;
   void enter(const FacePath& path);
   std::optional<FacePath> coarserBeside(const FacePath& path) const;
   void hurry(const Wanted& wanted, const Question& canMorph);
