@@ -38,6 +38,7 @@ bool BodyView::chooseHigher(const Camera& from, double allowedPixels) {
 }
 
 bool BodyView::select(const Camera& from, double allowedPixels, double seconds) {
+  hidden_ = false;
   SelectionSettings settings;
   settings.errorPixels = allowedPixels;
   const ResidentLookup known = lookup();
@@ -55,6 +56,7 @@ bool BodyView::select(const Camera& from, double allowedPixels, double seconds) 
 }
 
 bool BodyView::hide() {
+  hidden_ = true;
   selection_ = {};
   wantedLower_.clear();
   selection_.complete = true;
@@ -97,27 +99,31 @@ std::vector<WantedTile> BodyView::groundChain(const Camera& from, const ViewPose
 
 bool BodyView::request(const Camera& from, double allowedPixels, const std::optional<GroundCall>& ground, bool ahead) {
   std::vector<WantedTile> wanted = selection_.wanted;
+  std::unordered_set<FacePath> named;
+  named.reserve(wanted.size() * 2);
+  for (const WantedTile& tile : wanted) named.insert(tile.path);
+  const auto add = [&](const std::vector<WantedTile>& more) {
+    for (const WantedTile& tile : more)
+      if (named.insert(tile.path).second) wanted.push_back(tile);
+  };
+  add(wantedLower_);
   std::vector<WantedTile> chain;
   if (ground) chain = groundChain(from, ground->pose, allowedPixels);
   const bool groundKnown = !ground || stream_.resident(chain.back().path, index_) != nullptr;
   if (ground && ground->first && !groundKnown) {
     const auto known = groundBelow(ground->pose);
     const int finest = (known ? known->level : 0) + kLevelsAheadOfGround;
-    std::erase_if(wanted, [&](const WantedTile& tile) { return tile.path.level() > finest; });
+    std::erase_if(wanted,
+                  [&](const WantedTile& tile) { return tile.path.level() > finest && named.erase(tile.path) != 0; });
   }
-  std::unordered_set<FacePath> named;
-  named.reserve(wanted.size() * 2);
-  for (const WantedTile& tile : wanted) named.insert(tile.path);
-  for (const auto* more : {&wantedLower_, &chain})
-    for (const WantedTile& tile : *more)
-      if (named.insert(tile.path).second) wanted.push_back(tile);
+  add(chain);
   std::stable_sort(wanted.begin(), wanted.end(),
                    [](const WantedTile& a, const WantedTile& b) { return a.path.level() < b.path.level(); });
   wantedCount_ = wanted.size();
   missing_ = static_cast<std::size_t>(std::count_if(wanted.begin(), wanted.end(), [&](const WantedTile& tile) {
     return stream_.resident(tile.path, index_) == nullptr;
   }));
-  if (ahead && (groundKnown || !ground->first)) addBesidePicture(from, allowedPixels, named, wanted);
+  if (ahead && !hidden_ && (groundKnown || !ground->first)) addBesidePicture(from, allowedPixels, named, wanted);
   stream_.want(wanted, index_, ViewOfTiles{from, allowedPixels});
   return groundKnown;
 }

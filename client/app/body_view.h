@@ -74,6 +74,7 @@ class BodyView {
   TileSelection selection_;
   std::vector<WantedTile> wantedLower_;  ///< since choose
   LevelTransitions transitions_;
+  bool hidden_ = false;   ///< since the last choice: nothing of it is wanted, beside the picture neither
   bool overTime_ = true;  ///< what transitions_ was made for
   std::vector<DrawnTile> drawn_;
   std::size_t missing_ = 0, wantedCount_ = 0;

@@ -32,33 +32,35 @@ constexpr std::array kRelativeAttributes{
     gl::VertexAttribute{kRelativeLocation, 3, Component::F32, Conversion::Float, 0},
 };
 
-/// GpuVertex::place by grid index, of the grid's own vertices. Those of a mesh that is no complete grid mean nothing.
-std::vector<std::uint16_t> placesOf(const TileGrid& grid) {
-  std::vector<std::uint16_t> places;
-  places.reserve(static_cast<std::size_t>(grid.vertexCount()));
+/// Those of a mesh that is no complete grid mean nothing. order: MeshLayout's.
+std::vector<std::uint16_t> placesOf(const TileGrid& grid, const TileMesh& mesh,
+                                    const std::vector<std::uint32_t>& order) {
+  std::vector<std::uint16_t> byGridIndex;
+  byGridIndex.reserve(static_cast<std::size_t>(grid.vertexCount()));
   for (int j = 0; j <= grid.cells; ++j)
     for (int i = 0; i <= grid.rowEnd(j); ++i)
-      places.push_back(static_cast<std::uint16_t>((i & 0xFF) | (j & 0xFF) << 8));
+      byGridIndex.push_back(static_cast<std::uint16_t>((i & 0xFF) | (j & 0xFF) << 8));
+  std::vector<std::uint16_t> places(mesh.vertexCount());
+  for (std::size_t place = 0; place < places.size(); ++place) {
+    const std::size_t index = mesh.gridIndices[order.empty() ? place : order[place]];
+    places[place] = index < byGridIndex.size() ? byGridIndex[index] : kSkirtPlace;
+  }
   return places;
 }
 
-/// order: MeshLayout's.
-std::vector<GpuVertex> packVertices(const Tile& tile, const std::vector<std::uint32_t>& order) {
-  const TileMesh& mesh = tile.mesh;
-  const std::vector<std::uint16_t> places = placesOf({tile.metadata.path.scheme(), tile.metadata.cellsPerEdge});
+std::vector<GpuVertex> packVertices(const TileMesh& mesh, const MeshLayout& layout) {
   static const std::array<std::uint8_t, 256> displayBytes = makeDisplayBytes();
   std::vector<GpuVertex> vertices(mesh.vertexCount());
   for (std::size_t place = 0; place < vertices.size(); ++place) {
     GpuVertex& vertex = vertices[place];
-    const std::size_t i = order.empty() ? place : order[place];
+    const std::size_t i = layout.order.empty() ? place : layout.order[place];
     for (std::size_t c = 0; c < 3; ++c) {
       vertex.offset[c] = mesh.offsets[3 * i + c];
       const float normal = std::clamp(mesh.normals[3 * i + c], -1.0f, 1.0f);
       vertex.normal[c] = static_cast<std::int16_t>(std::lround(normal * 32767.0f));
       vertex.color[c] = displayBytes[mesh.colors.empty() ? kPlainColor : mesh.colors[3 * i + c]];
     }
-    const std::size_t grid = mesh.gridIndices[i];
-    vertex.place = grid < places.size() ? places[grid] : kSkirtPlace;
+    vertex.place = layout.places[place];
   }
   return vertices;
 }
@@ -122,6 +124,7 @@ std::shared_ptr<const MeshLayout> GpuTiles::layoutFor(const Tile& tile, std::siz
     made->indices = std::make_shared<TileIndices>(tile);
     bytesTaken += made->indices->bytes();
   }
+  made->places = placesOf(grid, mesh, made->order);
   slot = made;
   return made;
 }
@@ -134,7 +137,7 @@ std::size_t GpuTiles::upload(const Tile& tile) {
   uploaded->serial = ++uploads_;
   uploaded->vertexCount = tile.mesh.vertexCount();
   uploaded->layout = layoutFor(tile, bytesTaken);
-  uploaded->vertices.upload(gl::BufferTarget::Vertices, gl::bytesOf(packVertices(tile, uploaded->layout->order)),
+  uploaded->vertices.upload(gl::BufferTarget::Vertices, gl::bytesOf(packVertices(tile.mesh, *uploaded->layout)),
                             gl::BufferUse::Static);
   uploaded->array.attach(uploaded->vertices, sizeof(GpuVertex), kAttributes);
   gl::VertexArray::unbind();

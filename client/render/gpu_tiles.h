@@ -39,7 +39,8 @@ static_assert(sizeof(GpuVertex) == 20);
 
 /// How meshes of one connectivity are laid out and drawn.
 struct MeshLayout {
-  std::vector<std::uint32_t> order;  ///< the mesh's vertex at each place; empty: as they came
+  std::vector<std::uint32_t> order;   ///< the mesh's vertex at each place; empty: as they came
+  std::vector<std::uint16_t> places;  ///< GpuVertex::place of each vertex as it lies on the GPU
   std::shared_ptr<TileIndices> indices;
 };
 
