@@ -6,10 +6,10 @@
 
 in vec3 color;
 in vec3 surface;
-in vec3 roundNormal;
 in vec3 towardsEye;
 in float overGround;
 flat in vec3 up;
+flat in float flattening;
 
 layout(location = 0) out vec4 pixel;
 
@@ -21,7 +21,8 @@ const float kFootHeight = 0.7;      // half heights over the ground where nothin
 void main() {
   vec3 eye = normalize(towardsEye);
   vec3 face = cross(dFdx(surface), dFdy(surface));
-  vec3 round = normalize(roundNormal);
+  // Of the spheroid below this point: from the point, not from the corners, so that a mesh and the same one with more corners look alike.
+  vec3 round = normalize(surface + (1.0 / max(flattening * flattening, 1e-4) - 1.0) * dot(surface, up) * up);
   // Which way a face looks is not for the eye to tell at its rim: the round normal knows.
   float size = length(face);
   face = size > 0.0 ? face * (dot(face, round) < 0.0 ? -1.0 / size : 1.0 / size) : round;

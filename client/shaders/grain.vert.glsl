@@ -10,10 +10,10 @@ uniform float exposure;
 
 out vec3 color;         // as the display wants it, in full light
 out vec3 surface;       // on the grain, in half widths from its middle, body axes
-out vec3 roundNormal;   // of the spheroid there
 out vec3 towardsEye;
 out float overGround;   // height over the ground in half heights
 flat out vec3 up;
+flat out float flattening;
 
 void main() {
   LyingGrain grain = lyingGrain();
@@ -21,8 +21,8 @@ void main() {
   vec3 turned = direction + 2.0 * cross(turn.xyz, cross(turn.xyz, direction) + turn.w * direction);
   float along = dot(turned, grain.up);
   surface = radius * (turned + (grain.flattening - 1.0) * along * grain.up);
-  roundNormal = turned + (1.0 / grain.flattening - 1.0) * along * grain.up;
   up = grain.up;
+  flattening = grain.flattening;
   overGround = radius * along + grain.center / max(grain.flattening * grain.radius, 1e-9);
   vec3 relative = grain.root + (grain.center * grain.up + grain.radius * surface);
   towardsEye = -relative;

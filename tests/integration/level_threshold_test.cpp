@@ -20,7 +20,11 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kGpuBytes = 100'000;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kSteps = 100;
+#else
 constexpr int kSteps = 1000;
+#endif
 constexpr double kErrorPixels = 2;
 constexpr std::size_t kServerCache = 64u << 20;
 

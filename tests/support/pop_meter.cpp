@@ -140,14 +140,13 @@ TileSelection PopMeter::select(const Camera& camera) const {
   return selectTiles(camera, moon_.selection(), lookup(), {.errorPixels = kErrorPixels});
 }
 
+/// As a viewer that has stood still for a moment: what lies beside the picture is there as well, for a turn to find.
 void PopMeter::settle(const Camera& camera) {
   for (int face = 0; face < faceCount(moon_.selection().scheme); ++face)
     load(FacePath::wholeFace(moon_.selection().scheme, face));
-  for (;;) {
-    const TileSelection selection = select(camera);
-    if (selection.complete) return;
-    for (const WantedTile& wanted : selection.wanted) load(wanted.path);
-  }
+  for (const Camera& from : {camera, widened(camera, kShareAhead)})
+    for (TileSelection selection = select(from); !selection.complete; selection = select(from))
+      for (const WantedTile& wanted : selection.wanted) load(wanted.path);
 }
 
 Image PopMeter::picture(const Camera& camera, const std::vector<DrawnTile>& tiles) {
