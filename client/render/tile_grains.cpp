@@ -53,7 +53,7 @@ InTriangle triangleAt(const TileGrid& grid, unsigned coarserEdges, const glm::dv
     if (found) return;
     std::array<glm::ivec2, 3> corners{};
     std::ranges::transform(std::array{a, b, c}, corners.begin(), [&](const GridVertex& corner) {
-      const GridVertex drawn = stitchedVertex(grid, coarserEdges, corner);
+      const GridVertex drawn = grid.stitched(coarserEdges, corner);
       return glm::ivec2(drawn.i, drawn.j);
     });
     found = within(corners, at);

@@ -36,32 +36,14 @@ std::vector<std::uint64_t> sortedTriangles(const std::vector<std::uint16_t>& ind
 
 }  // namespace
 
-GridVertex stitchedVertex(const TileGrid& grid, unsigned coarserEdges, GridVertex at) noexcept {
-  const unsigned borders = grid.borders(at);
-  const auto on = [&](int edge) {
-    return ((coarserEdges >> static_cast<unsigned>(edge)) & 1u) != 0 && (borders & grid.borderOf(edge)) != 0;
-  };
-  if (grid.isSquare()) {
-    if (on(static_cast<int>(Side::VMin)) || on(static_cast<int>(Side::VMax))) at.i &= ~1;
-    if (on(static_cast<int>(Side::UMin)) || on(static_cast<int>(Side::UMax))) at.j &= ~1;
-    return at;
-  }
-  // An odd vertex is on one edge alone.
-  if (on(0) && (at.j & 1) != 0) return {at.i + 1, at.j - 1};
-  if (on(1) && (at.j & 1) != 0) return {0, at.j + 1};
-  if (on(2) && (at.i & 1) != 0) return {at.i - 1, 0};
-  return at;
-}
-
 std::vector<std::uint16_t> gridTriangles(const TileGrid& grid, unsigned coarserEdges) {
   const int cells = grid.cells;
   std::vector<std::uint16_t> indices;
   indices.reserve(6 * static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells));
   const auto add = [&](const GridVertex& a, const GridVertex& b, const GridVertex& c) {
     std::array<int, 3> corners{};
-    std::ranges::transform(std::array{a, b, c}, corners.begin(), [&](const GridVertex& corner) {
-      return grid.index(stitchedVertex(grid, coarserEdges, corner));
-    });
+    std::ranges::transform(std::array{a, b, c}, corners.begin(),
+                           [&](const GridVertex& corner) { return grid.index(grid.stitched(coarserEdges, corner)); });
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
     for (const int corner : corners) indices.push_back(static_cast<std::uint16_t>(corner));
   };

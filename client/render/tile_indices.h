@@ -25,11 +25,6 @@ std::vector<std::uint16_t> skirtTriangles(const TileGrid& grid);
 /// exactly the triangles above.
 std::optional<std::vector<std::uint32_t>> verticesInGridOrder(const TileMesh& mesh, const TileGrid& grid);
 
-/// Where a vertex of the surface is drawn: itself, or for an odd vertex of a coarser edge the even one before it, along
-/// a row or column of a square, counter-clockwise around a triangle. Taking always the one before keeps the triangles
-/// of both edges apart at a corner.
-GridVertex stitchedVertex(const TileGrid& grid, unsigned coarserEdges, GridVertex at) noexcept;
-
 struct IndexList {
   gl::Buffer buffer;
   std::size_t count = 0;

@@ -12,6 +12,10 @@ namespace {
 /// most half a step of some 500 in a cell.
 constexpr double kEdgeTolerance = 0.05;
 
+/// How far the triangle that a point lies in may be from the cell that it would lie in without stitching, or from where
+/// a walk towards it ended.
+constexpr int kStitchReach = 2;
+
 /// Weights of what is no triangle.
 constexpr double kNoTriangle = -1e29;
 
@@ -29,6 +33,7 @@ struct GroundMesh::Ray {
   // Only for a tile that is drawn on its way to its parent.
   const GroundMesh* parent = nullptr;
   MorphByBorders byBorders{};
+  unsigned coarserEdges = 0;
   int childDigit = 0;
   glm::dvec3 parentOriginFromAnchor;
 };
@@ -128,7 +133,7 @@ GroundMesh::Hit GroundMesh::meetTriangle(const Ray& ray, const std::array<GridVe
   // Seen along the ray, the ray is the origin: its barycentric coordinates are ratios of areas.
   std::array<double, 3> x{}, y{}, depth{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const glm::dvec3 corner = vertex(ray, corners[k]);
+    const glm::dvec3 corner = vertex(ray, grid_.stitched(ray.coarserEdges, corners[k]));
     x[k] = glm::dot(corner, ray.across);
     y[k] = glm::dot(corner, ray.along);
     depth[k] = glm::dot(corner, ray.direction);
@@ -177,6 +182,7 @@ std::optional<double> GroundMesh::morphedHeightMeters(const glm::dvec3& directio
   if (parent.grid_ == grid_ && grid_.cells % 2 == 0 && parent.stepExponent_ == stepExponent_ + 1) {
     ray.parent = &parent;
     ray.byBorders = morphByBorders(grid_, morph);
+    ray.coarserEdges = morph.coarserEdges;
     ray.childDigit = childDigit;
     ray.parentOriginFromAnchor = latticePosition(parent.origin_, parent.stepExponent_) - ray.anchorMeters * direction;
   }
@@ -217,6 +223,18 @@ GroundMesh::Hit GroundMesh::meetTriangles(const Ray& ray, double u, double v) co
     });
     if (way == outermost.end()) break;
     cell = cell.beyond(*way);
+  }
+  // Beside a coarser tile there are triangles without area, over which no way leads.
+  const int reach = best.inside() < 0 && ray.coarserEdges != 0 ? kStitchReach : -1;
+  for (int dj = -reach; dj <= reach; ++dj) {
+    for (int di = -reach; di <= reach; ++di) {
+      for (const bool turned : {false, true}) {
+        const Cell other{cell.i + di, cell.j + dj, turned};
+        if (!other.isOf(cells)) continue;
+        const Hit hit = meetTriangle(ray, other.corners());
+        if (hit.inside() > best.inside()) best = hit;
+      }
+    }
   }
   return best;
 }

@@ -114,6 +114,33 @@ std::optional<glm::dvec3> unitDirection(const glm::dvec3& direction) {
   return direction / length;
 }
 
+/// What is drawn under a tile of the finest level; where nothing is, the tile there that is of the level of the nearest
+/// drawn one, morphed as that is. Precondition: something is drawn.
+DrawnTile drawnAround(const FacePath& finest, const std::vector<DrawnTile>& drawn) {
+  std::unordered_map<FacePath, const DrawnTile*> coarsestIn;  // a drawn tile, or an ancestor of some
+  for (const DrawnTile& tile : drawn) {
+    if (finest.ancestor(tile.path.level()) == tile.path) return tile;
+    for (int level = tile.path.level(); level >= 0; --level) {
+      const DrawnTile*& coarsest = coarsestIn.try_emplace(tile.path.ancestor(level), &tile).first->second;
+      if (tile.path.level() < coarsest->path.level()) coarsest = &tile;
+    }
+  }
+  const auto levelOf = [](const DrawnTile& tile) { return tile.path.level(); };
+  const DrawnTile* nearest = &*std::ranges::max_element(drawn, {}, levelOf);
+  for (int level = levelOf(*nearest); level >= 0; --level) {
+    const FacePath here = finest.ancestor(level);
+    auto found = coarsestIn.find(here);
+    for (const FacePath& beside : tilesAround(here))
+      if (found == coarsestIn.end()) found = coarsestIn.find(beside);
+    if (found == coarsestIn.end()) continue;
+    nearest = found->second;
+    break;
+  }
+  DrawnTile beyond{finest.ancestor(levelOf(*nearest)), {.own = nearest->morph.own}};
+  beyond.morph.sides.fill(nearest->morph.own);
+  return beyond;
+}
+
 }  // namespace
 
 std::optional<TileResidency::Ground> TileResidency::groundBelow(const glm::dvec3& directionBody, double radiusMeters,
@@ -136,20 +163,18 @@ std::optional<double> TileResidency::drawnHeightBelow(const glm::dvec3& directio
                                                       const std::vector<DrawnTile>& drawn) const {
   const auto direction = unitDirection(directionBody);
   if (!direction || drawn.empty()) return std::nullopt;
-  const FacePath finest = tileAt(drawn.front().path.scheme(), *direction, FacePath::kMaxLevel);
-  for (const DrawnTile& tile : drawn) {
-    const int level = tile.path.level();
-    if (finest.ancestor(level) != tile.path) continue;
-    const auto found = tiles_.find(tile.path);
-    if (found == tiles_.end()) return std::nullopt;
-    const glm::dvec2 at = placeInTile(tile.path, *direction);
-    const GroundMesh& ground = found->second.ground;
-    const auto above = level > 0 ? tiles_.find(tile.path.parent()) : tiles_.end();
-    if (above == tiles_.end()) return ground.heightMeters(*direction, at.x, at.y, radiusMeters);
-    return ground.morphedHeightMeters(*direction, at.x, at.y, radiusMeters, tile.morph, above->second.ground,
-                                      tile.path.digit(level - 1));
-  }
-  return std::nullopt;
+  DrawnTile tile = drawnAround(tileAt(drawn.front().path.scheme(), *direction, FacePath::kMaxLevel), drawn);
+  auto found = tiles_.find(tile.path);
+  for (; found == tiles_.end() && tile.path.level() > 0; found = tiles_.find(tile.path))
+    tile = {tile.path.parent(), {}};
+  if (found == tiles_.end()) return std::nullopt;
+  const int level = tile.path.level();
+  const glm::dvec2 at = placeInTile(tile.path, *direction);
+  const GroundMesh& ground = found->second.ground;
+  const auto above = level > 0 ? tiles_.find(tile.path.parent()) : tiles_.end();
+  if (above == tiles_.end()) return ground.heightMeters(*direction, at.x, at.y, radiusMeters);
+  return ground.morphedHeightMeters(*direction, at.x, at.y, radiusMeters, tile.morph, above->second.ground,
+                                    tile.path.digit(level - 1));
 }
 
 }  // namespace terrane

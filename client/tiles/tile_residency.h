@@ -67,7 +67,9 @@ class TileResidency {
   /// Of the finest tile of a scheme under a direction of any length, body frame. Empty if there is none, or for a
   /// direction of no length.
   std::optional<Ground> groundBelow(const glm::dvec3& directionBody, double radiusMeters, Scheme scheme) const;
-  /// Of that one of the drawn tiles which is under the direction, as it is drawn; empty if none is.
+  /// Of that one of the drawn tiles which is under the direction, as it is drawn. Where none is, for a camera looks
+  /// ahead and not down, of what would go on there from the nearest: a tile as fine, or the finest above it that is
+  /// resident, as far on its way to its parent. Empty if nothing is drawn, or nothing is there.
   std::optional<double> drawnHeightBelow(const glm::dvec3& directionBody, double radiusMeters,
                                          const std::vector<DrawnTile>& drawn) const;
 

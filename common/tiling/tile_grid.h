@@ -72,6 +72,26 @@ struct TileGrid {
     return {first, {first.i + (at.i & 1), first.j + (at.j & 1)}};
   }
 
+  /// Where a vertex of the surface is drawn beside coarser tiles: itself, or for an odd vertex of a coarser edge (a bit
+  /// each) the even one before it, along a row or column of a square, counter-clockwise around a triangle. Taking
+  /// always the one before keeps the triangles of both edges apart at a corner. Precondition: cells is even.
+  constexpr GridVertex stitched(unsigned coarserEdges, const GridVertex& at) const noexcept {
+    const unsigned on = borders(at);
+    const auto isOn = [&](int edge) {
+      return ((coarserEdges >> static_cast<unsigned>(edge)) & 1u) != 0 && (on & borderOf(edge)) != 0;
+    };
+    if (isSquare()) {
+      const bool alongRow = isOn(static_cast<int>(Side::VMin)) || isOn(static_cast<int>(Side::VMax));
+      const bool alongColumn = isOn(static_cast<int>(Side::UMin)) || isOn(static_cast<int>(Side::UMax));
+      return {alongRow ? at.i & ~1 : at.i, alongColumn ? at.j & ~1 : at.j};
+    }
+    // An odd vertex is on one edge alone.
+    if (isOn(0) && (at.j & 1) != 0) return {at.i + 1, at.j - 1};
+    if (isOn(1) && (at.j & 1) != 0) return {0, at.j + 1};
+    if (isOn(2) && (at.i & 1) != 0) return {at.i - 1, 0};
+    return at;
+  }
+
   /// Calls use(a, b, c) with the corners of each triangle of a cell, counter-clockwise from outside: two of a square's
   /// cell; of a triangle's the one that lies as the tile does and, unless the cell is its row's last, the one turned
   /// round. Precondition: the cell's first corner is (i, j), and has((i + 1, j)) and has((i, j + 1)).

@@ -30,8 +30,8 @@ function(terrane_precompile_headers name)
     <span> <string> <string_view> <unordered_map> <utility> <vector> <glm/glm.hpp> <fmt/format.h> <boost/system/result.hpp>)
 endfunction()
 
-function(terrane_precompile_test_headers name)
-  terrane_precompile(TESTS ${name} <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <chrono> <cmath> <functional> <map>
+function(terrane_precompile_test_headers kind name)
+  terrane_precompile(${kind} ${name} <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <chrono> <cmath> <functional> <map>
     <memory> <random> <string> <thread> <vector> <glm/glm.hpp> <fmt/format.h> <boost/system/result.hpp>)
 endfunction()
 
@@ -51,7 +51,14 @@ function(terrane_test name)
   endif()
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
-  terrane_precompile_test_headers(${name})
+  # What numeric tests try is inline and must be as fast programs have it; of other tests only what they call matters, and
+  # optimising assertions takes a third of their compilation.
+  if(ARG_LABEL STREQUAL "numeric")
+    terrane_precompile_test_headers(NUMERIC_TESTS ${name})
+  else()
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    terrane_precompile_test_headers(TESTS ${name})
+  endif()
   target_compile_definitions(${name} PRIVATE TERRANE_SOURCE_DIR="${CMAKE_SOURCE_DIR}" TERRANE_BINARY_DIR="${CMAKE_BINARY_DIR}" ${ARG_DEFINITIONS})
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${ARG_PROCESSORS})
 endfunction()

@@ -146,6 +146,87 @@ TEST_P(GroundMeshOfSchemes, OnItsWayToTheParentATileIsWhereItIsDrawn) {
   EXPECT_GT(largestDifference, 1000) << "or nothing was tested";
 }
 
+/// The surface of a tile drawn beside coarser ones: every triangle, in long double.
+std::optional<double> drawnHeight(const Tile& tile, const Tile& parent, const TileMorph& morph,
+                                  const glm::dvec3& direction, double radius) {
+  using Vector = glm::tvec3<long double>;
+  const TileGrid grid{tile.metadata.path.scheme(), tile.metadata.cellsPerEdge};
+  const auto positions = [&](const Tile& of) {
+    std::vector<Vector> byIndex(static_cast<std::size_t>(grid.vertexCount()));
+    const auto step = static_cast<long double>(stepMeters(of.metadata.stepExponent));
+    for (std::size_t vertex = 0; vertex < of.mesh.vertexCount(); ++vertex) {
+      if (of.mesh.gridIndices[vertex] >= byIndex.size()) continue;
+      for (int k = 0; k < 3; ++k)
+        byIndex[of.mesh.gridIndices[vertex]][k] =
+            step *
+            static_cast<long double>(of.metadata.origin[k] + of.mesh.offsets[3 * vertex + static_cast<std::size_t>(k)]);
+    }
+    return byIndex;
+  };
+  const std::vector<Vector> own = positions(tile), above = positions(parent);
+  const MorphByBorders byBorders = morphByBorders(grid, morph);
+  const auto drawn = [&](const GridVertex& corner) {
+    const GridVertex at = grid.stitched(morph.coarserEdges, corner);
+    const auto [first, second] = grid.parentVertices(tile.metadata.path.digit(tile.metadata.path.level() - 1), at);
+    const auto indexOf = [&](const GridVertex& v) { return static_cast<std::size_t>(grid.index(v)); };
+    const Vector to = (above[indexOf(first)] + above[indexOf(second)]) / 2.0L;
+    return own[indexOf(at)] + static_cast<long double>(byBorders[grid.borders(at)]) * (to - own[indexOf(at)]);
+  };
+  std::optional<double> found;
+  const Vector d = glm::normalize(Vector(direction));
+  const auto look = [&](const GridVertex& first, const GridVertex& second, const GridVertex& third) {
+    const Vector a = drawn(first), b = drawn(second), c = drawn(third), normal = glm::cross(b - a, c - a);
+    if (!(glm::dot(normal, d) > 0)) return;
+    const long double along = glm::dot(normal, a) / glm::dot(normal, d);
+    const Vector p = d * along;
+    if (glm::dot(glm::cross(b - a, p - a), normal) >= 0 && glm::dot(glm::cross(c - b, p - b), normal) >= 0 &&
+        glm::dot(glm::cross(a - c, p - c), normal) >= 0)
+      found = static_cast<double>(along - static_cast<long double>(radius));
+  };
+  for (int j = 0; j < grid.cells; ++j)
+    for (int i = 0; i < grid.rowEnd(j); ++i) grid.eachTriangle(i, j, look);
+  return found;
+}
+
+// A camera over coarse ground is held above what is drawn: half a metre below it, it would look through the ground.
+TEST_P(GroundMeshOfSchemes, BesideACoarserTileItIsTheStitchedSurfaceThatIsDrawn) {
+  constexpr unsigned kSeed = 20261127;
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const double radius = testing::kMoonRadius;
+  const SmallTileOptions options{radius, 8, false, true};
+  const FacePath parentPath = *FacePath::parse(std::string(schemeName(GetParam())) + "/2/0312");
+  const Tile parent = smallTile(parentPath, hilly, options);
+  const int edges = edgeCount(GetParam());
+  int compared = 0;
+  double unstitchedDiffers = 0;
+  for (unsigned coarserEdges = 1; coarserEdges < 1u << edges; ++coarserEdges) {
+    TileMorph morph;
+    morph.coarserEdges = static_cast<std::uint8_t>(coarserEdges);
+    for (int edge = 0; edge < edges; ++edge)
+      if (((coarserEdges >> edge) & 1u) != 0) morph.sides[static_cast<std::size_t>(edge)] = 1;
+    TileMorph unstitched = morph;
+    unstitched.coarserEdges = 0;
+    const int digit = static_cast<int>(coarserEdges % 4);
+    const Tile tile = smallTile(parentPath.child(digit), hilly, options);
+    const GroundMesh mesh = GroundMesh::fromTile(tile), above = GroundMesh::fromTile(parent);
+    for (int i = 0; i < 200; ++i) {
+      const Place place = placeIn(tile.metadata.path, 0.01 + 0.98 * unit(random), 0.01 + 0.98 * unit(random));
+      const auto expected = drawnHeight(tile, parent, morph, place.direction, radius);
+      if (!expected) continue;  // beside the mesh
+      ++compared;
+      const auto of = [&](const TileMorph& drawn) {
+        return mesh.morphedHeightMeters(place.direction, place.u, place.v, radius, drawn, above, digit).value_or(-1e9);
+      };
+      EXPECT_NEAR(of(morph), *expected, 4 * 2.3e-16 * radius) << coarserEdges << " at " << place.u << ", " << place.v;
+      unstitchedDiffers = std::max(unstitchedDiffers, std::abs(of(unstitched) - *expected));
+    }
+  }
+  EXPECT_GT(compared, 1000);
+  EXPECT_GT(unstitchedDiffers, 5) << "the control";
+}
+
 INSTANTIATE_TEST_SUITE_P(Schemes, GroundMeshOfSchemes, test::bothSchemes(), test::nameOfScheme);
 
 TEST(GroundMesh, AnEdgeThatIsTheParentsMeetsTheParentsSurface) {

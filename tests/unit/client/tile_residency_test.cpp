@@ -170,9 +170,30 @@ TEST(TileResidency, TheDrawnHeightIsThatOfTheDrawnTileAsItIsDrawnWhateverFinerIs
   EXPECT_NEAR(drawn("cube/2/00000000003", 0), 160, 1);
   EXPECT_NEAR(drawn("cube/2/00000000003", 0.5f), 130, 1);
   EXPECT_NEAR(drawn("cube/2/00000000003", 1), 100, 1);
-  EXPECT_EQ(drawn("cube/2/0000000001", 0), -1e9) << "drawn elsewhere";
   EXPECT_FALSE(small.residency.drawnHeightBelow(below, kMoonRadius, {}));
   EXPECT_FALSE(small.residency.drawnHeightBelow(glm::dvec3(0), kMoonRadius, {{path("cube/2/0000000000"), {}}}));
+}
+
+// A camera just over fine ground that looks ahead, where only coarse tiles have come, must not stand in their hills.
+TEST(TileResidency, WhereNothingIsDrawnBelowTheGroundGoesOnAsItIsDrawnBeside) {
+  SmallResidency small;
+  small.add("cube/2/00000000", 50);
+  small.add("cube/2/0000000000", 100);
+  small.add("cube/2/00000000003", 160);
+  small.add("cube/2/000000000033", 500);
+  const double tiles = 1024;
+  const glm::dvec3 below = cubeDirection(2, 2 * 0.9 / tiles - 1, 2 * 0.9 / tiles - 1);
+  const auto drawn = [&](std::vector<DrawnTile> drawnTiles) {
+    return small.residency.drawnHeightBelow(below, kMoonRadius, drawnTiles).value_or(-1e9);
+  };
+  TileMorph half{.own = 0.5f};
+  EXPECT_NEAR(drawn({{path("cube/2/0000000001"), {}}}), 100, 1) << "as fine as beside";
+  EXPECT_NEAR(drawn({{path("cube/2/00000000012"), {}}}), 160, 1);
+  EXPECT_NEAR(drawn({{path("cube/2/00000000012"), half}}), 130, 1) << "and as far on its way";
+  EXPECT_NEAR(drawn({{path("cube/2/00000000002"), {}}}), 160, 1) << "of the same parent";
+  EXPECT_NEAR(drawn({{path("cube/2/00000000002"), {}}, {path("cube/2/0000000001"), {}}}), 160, 1) << "the nearer";
+  EXPECT_NEAR(drawn({{path("cube/2/000000001"), {}}}), 50, 1) << "none as coarse is there: the next one above";
+  EXPECT_EQ(drawn({{path("cube/3"), {}}}), -1e9) << "nothing as coarse as what is drawn";
 }
 
 TEST(TileResidency, ClearingForgetsEverything) {
