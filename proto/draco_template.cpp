@@ -2,7 +2,6 @@
 
 #include <draco/compression/attributes/normal_compression_utils.h>
 #include <draco/compression/attributes/prediction_schemes/prediction_scheme_normal_octahedron_canonicalized_encoding_transform.h>
-#include <draco/compression/entropy/symbol_encoding.h>
 #include <draco/compression/mesh/mesh_edgebreaker_encoder.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 
 #include "common/numerics/strict_math.h"
 #include "proto/draco_input.h"
+#include "proto/symbol_encoder.h"
 
 namespace terrane {
 namespace {
@@ -85,9 +85,14 @@ void beginAttribute(Method method, Transform transform, draco::EncoderBuffer& ou
 }
 
 bool encodeSymbols(std::span<const std::uint32_t> symbols, int components, int speed, draco::EncoderBuffer& out) {
-  draco::Options options;
-  draco::SetSymbolEncodingCompressionLevel(&options, 10 - speed);
-  return draco::EncodeSymbols(symbols.data(), static_cast<int>(symbols.size()), components, &options, &out);
+  thread_local SymbolEncoder encoder;
+  thread_local std::vector<std::uint8_t> bytes;
+  if (!encoder.begin(symbols, components, 10 - speed)) return false;
+  RansStream* const streams[] = {&encoder.stream()};
+  encodeStreams(streams);
+  bytes.clear();
+  encoder.append(bytes);
+  return out.Encode(bytes.data(), bytes.size());
 }
 
 /// Values of one attribute, predicted by parallelograms.
