@@ -180,7 +180,7 @@ TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(s
 
   const FacePath first = FacePath::wholeFace(state.scheme, 0);
   if (const Result<Tile> model = buildMesh(first); model.has_value())
-    state.draco = DracoTemplate::learn(model->mesh, wire.draco);
+    if (auto learnt = DracoTemplate::learn(model->mesh, wire.draco)) state.draco = *learnt;
 
   const Result<BuiltTile> probe = build(first);
   state.info.revision =
