@@ -97,7 +97,7 @@ Result<void> DracoTemplate::encodeFitting(const TileMesh& mesh, DracoBuffer& out
   if (normalPrediction_ == NormalPrediction::Geometric)
     geometricSymbols(settings_.normalBits, scratch.residuals.values, order_, scratch.normals, directions.symbols);
   else
-    differenceSymbols(settings_.normalBits, scratch.normals, directions.symbols);
+    differenceSymbols(settings_.normalBits, order_, scratch.normals, directions.symbols);
   ValueRange colorRange;
   if (colors_)
     colorRange = residualSymbols(std::span(mesh.colors), 3, order_, prediction_, scratch.residuals, colors.symbols);

@@ -1,11 +1,24 @@
 #pragma once
-// Numbers as Draco's streams hold them, at the end of some bytes. Private to proto.
+// Numbers as Draco's streams hold them. Private to proto. Thread-safe.
 
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 #include <vector>
 
 namespace terrane {
+
+/// All bytes of value, which the caller has room for even where it keeps fewer.
+template <class T>
+void putLittleEndian(std::uint8_t* out, T value) noexcept {
+  static_assert(std::is_unsigned_v<T>);
+  if constexpr (std::endian::native == std::endian::little) {
+    std::memcpy(out, &value, sizeof value);
+  } else {
+    for (std::size_t byte = 0; byte < sizeof value; ++byte) out[byte] = static_cast<std::uint8_t>(value >> (8 * byte));
+  }
+}
 
 template <class T>
 void appendLittleEndian(T value, std::vector<std::uint8_t>& out) {

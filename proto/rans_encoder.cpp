@@ -1,21 +1,12 @@
 #include "proto/rans_encoder.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <functional>
+
+#include "proto/little_endian.h"
 
 namespace terrane {
 namespace {
-
-/// Four bytes, of which the stream keeps as many as it wants.
-void putLittleEndian(std::uint8_t* out, std::uint32_t value) noexcept {
-  if constexpr (std::endian::native == std::endian::little) {
-    std::memcpy(out, &value, 4);
-  } else {
-    for (int i = 0; i < 4; ++i) out[i] = static_cast<std::uint8_t>(value >> (8 * i));
-  }
-}
 
 /// A stream under way.
 struct Lane {

@@ -1,40 +1,26 @@
 #include "proto/residual_symbols.h"
 
 #include <algorithm>
-#include <cstring>
 
-#include "common/numerics/strict_math.h"
+#include "proto/vector4.h"
 
 namespace terrane {
 namespace {
-
-/// Four numbers side by side, of which three or one are used: GCC and Clang make vector instructions of them on every
-/// machine that has some.
-using Int4 = std::int32_t __attribute__((vector_size(16)));
-using Float4 = float __attribute__((vector_size(16)));
-
-Int4 load(const std::int32_t* from) noexcept {
-  Int4 loaded;
-  std::memcpy(&loaded, from, sizeof loaded);
-  return loaded;
-}
-
-Int4 all(std::int32_t value) noexcept { return Int4{value, value, value, value}; }
 
 /// The residual of a value known to lie in a range, brought into half of that range on either side of zero.
 class WrappedResidual {
  public:
   explicit WrappedResidual(const ValueRange& range)
-      : least_(all(range.least)),
-        greatest_(all(range.greatest)),
-        size_(all(1 + range.greatest - range.least)),
+      : least_(all4(range.least)),
+        greatest_(all4(range.greatest)),
+        size_(all4(1 + range.greatest - range.least)),
         lowest_(-(size_ / 2)),
         highest_((size_ - 1) / 2) {}
 
   /// As symbols: 0, -1, 1, -2, ...
   Int4 operator()(Int4 value, Int4 predicted) const noexcept {
-    predicted = predicted < least_ ? least_ : predicted;
-    predicted = predicted > greatest_ ? greatest_ : predicted;
+    predicted = choose(predicted < least_, least_, predicted);
+    predicted = choose(predicted > greatest_, greatest_, predicted);
     Int4 residual = value - predicted;
     residual += (residual < lowest_) & size_;
     residual -= (residual > highest_) & size_;
@@ -47,7 +33,7 @@ class WrappedResidual {
 
 struct Entries {
   const std::int32_t* values;
-  Int4 operator[](std::size_t entry) const noexcept { return load(values + 4 * entry); }
+  Int4 operator[](std::size_t entry) const noexcept { return load4(values + 4 * entry); }
   Int4 by(const Parallelogram& p) const noexcept { return (*this)[p.next] + (*this)[p.previous] - (*this)[p.opposite]; }
 };
 
@@ -58,7 +44,7 @@ void writeSymbols(const Entries& entries, std::size_t count, const WrappedResidu
   symbols.resize(kComponents * count + 3);  // an entry is written whole; what is too much the next one covers
   std::uint32_t* out = symbols.data();
   const auto write = [&](Int4 values) {
-    std::memcpy(out, &values, sizeof values);
+    store4(out, values);
     out += kComponents;
   };
   write(residual(entries[0], Int4{}));

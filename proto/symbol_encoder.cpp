@@ -178,6 +178,11 @@ void SymbolEncoder::appendTable(std::vector<std::uint8_t>& out) const {
 
 /// The values' bits, lowest first, one after the other.
 void SymbolEncoder::appendBits(std::vector<std::uint8_t>& out) const {
+  std::size_t bits = 0;
+  for (const std::uint32_t length : lengths_) bits += length;
+  const std::size_t begin = out.size(), byteCount = (bits * components_ + 7) / 8;
+  out.resize(begin + byteCount + 8);
+  std::uint8_t* to = out.data() + begin;
   std::uint64_t pending = 0;
   std::uint32_t count = 0;
   const std::uint32_t* symbol = symbols_.data();
@@ -185,10 +190,13 @@ void SymbolEncoder::appendBits(std::vector<std::uint8_t>& out) const {
     for (std::size_t c = 0; c < components_; ++c) {
       pending |= static_cast<std::uint64_t>(*symbol++) << count;
       count += length;
-      for (; count >= 8; count -= 8, pending >>= 8) out.push_back(static_cast<std::uint8_t>(pending));
+      putLittleEndian(to, pending);  // of which whole bytes stay
+      to += count / 8;
+      pending >>= count / 8 * 8;
+      count %= 8;
     }
   }
-  if (count > 0) out.push_back(static_cast<std::uint8_t>(pending));
+  out.resize(begin + byteCount);
 }
 
 void SymbolEncoder::append(std::vector<std::uint8_t>& out) const {
