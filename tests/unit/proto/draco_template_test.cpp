@@ -140,10 +140,36 @@ TEST(DracoTemplate, WritesIntoMemoryThatIsThere) {
   EXPECT_EQ(buffer.bytes, first);
 }
 
+/// Triangles around one vertex.
+TileMesh fan(std::uint32_t triangles) {
+  TileMesh mesh;
+  for (std::uint32_t i = 0; i < triangles + 2; ++i) {
+    mesh.gridIndices.push_back(static_cast<std::uint16_t>(i));
+    for (int axis = 0; axis < 3; ++axis) mesh.normals.push_back(1.0f);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) mesh.offsets.push_back(static_cast<std::uint16_t>(i * (axis + 1)));
+    if (i >= 2) mesh.triangles.insert(mesh.triangles.end(), {0, i - 1, i});
+  }
+  return mesh;
+}
+
 TEST(DracoTemplate, SaysWhyLibdracoMustDoItAlone) {
   const auto slow = DracoTemplate::learn(sampleMesh(8), {.speed = 1});
   EXPECT_EQ(slow.error().kind, ErrorKind::Unsupported);
   EXPECT_EQ(slow.error().field, "speed");
+  const auto crowded = DracoTemplate::learn(fan(kMostFacesAroundEntry + 1), {});
+  EXPECT_EQ(crowded.error().kind, ErrorKind::Unsupported);
+  EXPECT_EQ(crowded.error().field, "triangles");
+}
+
+TEST(DracoTemplate, GivesTheBytesOfLibdracoWithAsManyTrianglesAroundAVertexAsItTakes) {
+  const TileMesh model = fan(kMostFacesAroundEntry);
+  for (const int speed : {3, 7}) {
+    const DracoSettings settings{.speed = speed, .normalBits = 16};
+    const auto learnt = DracoTemplate::learn(model, settings);
+    ASSERT_TRUE(learnt.has_value()) << learnt.error().text();
+    for (const auto& [name, mesh] : kindsOfData(model))
+      EXPECT_TRUE((*learnt)->encode(mesh)->bytes == encodeDraco(mesh, settings)->bytes) << name << ", speed " << speed;
+  }
 }
 
 TEST(DracoTemplate, LeavesAMeshOfAnotherKindToLibdraco) {
