@@ -17,7 +17,7 @@ namespace terrane {
 enum class DracoPrediction : std::uint8_t {
   StockAtSpeed,        ///< as libdraco does at that speed
   Parallelogram,       ///< libdraco's at speeds 2 to 7
-  MultiParallelogram,  ///< by the mean of all parallelograms around; libdraco tries each set of them, at speeds 0 and 1
+  MultiParallelogram,  ///< by the mean of all parallelograms around; libdraco picks some of them, at speeds 0 and 1
 };
 
 /// How normals are predicted.
@@ -28,8 +28,8 @@ enum class DracoNormals : std::uint8_t {
 };
 
 struct DracoSettings {
-  /// 0 (smallest) .. 10 (fastest). 4 takes 10 % fewer bytes than 7 and 8 % more time; above 7 tiles grow by a third
-  /// for 3 % less time.
+  /// 0 (smallest) .. 10 (fastest). By libdraco 4 takes 10 % fewer bytes than 7 and 8 % more time, and above 7 tiles
+  /// grow by a third for 3 % less time; by a DracoTemplate 4 to 10 take the same time.
   int speed = 7;
   int normalBits = 8;  ///< octahedral, 2..16
   /// Only a DracoTemplate can choose these, and any decoder of Draco reads them; encodeDraco predicts as libdraco does

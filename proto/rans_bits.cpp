@@ -11,12 +11,13 @@ namespace terrane {
 namespace {
 
 constexpr std::uint32_t kPrecision = 256, kLeastState = 4096;
+constexpr double kHalf = 0.5;  ///< added before cutting, as libdraco rounds
 
 /// Of 256; neither 0 nor all.
 std::uint32_t probabilityOfZero(std::span<const std::uint8_t> bits) {
   const auto zeros = static_cast<double>(std::ranges::count(bits, 0));
   const double total = std::max<double>(1.0, static_cast<double>(bits.size()));
-  return std::clamp(static_cast<std::uint32_t>(zeros / total * 256.0 + 0.5), 1u, 255u);
+  return std::clamp(static_cast<std::uint32_t>(zeros / total * kPrecision + kHalf), 1u, 255u);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace {
 
 /// Probabilities below it are sorted by counting. At most 2^20 / kSmall others exist.
 constexpr std::uint32_t kSmall = 2048;
+constexpr double kHalf = 0.5;  ///< added before cutting, as libdraco rounds
 
 }  // namespace
 
@@ -41,7 +42,7 @@ void ProbabilityScaler::scale(std::span<const std::uint32_t> frequencies, bool w
   std::int64_t total = 0;
   for (std::size_t i = 0; i < frequencies.size(); ++i) {
     const double share = static_cast<double>(frequencies[i]) / sum;
-    probabilities[i] = std::max(1u, static_cast<std::uint32_t>(share * static_cast<double>(precision) + 0.5));
+    probabilities[i] = std::max(1u, static_cast<std::uint32_t>(share * static_cast<double>(precision) + kHalf));
     total += probabilities[i];
   }
   if (total == precision) return;
