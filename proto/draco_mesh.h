@@ -13,11 +13,29 @@
 
 namespace terrane {
 
+/// How offsets, colours and grid indices are predicted.
+enum class DracoPrediction : std::uint8_t {
+  StockAtSpeed,        ///< as libdraco does at that speed
+  Parallelogram,       ///< libdraco's at speeds 2 to 7
+  MultiParallelogram,  ///< by the mean of all parallelograms around; libdraco picks some of them, at speeds 0 and 1
+};
+
+/// How normals are predicted.
+enum class DracoNormals : std::uint8_t {
+  StockAtSpeed,
+  Delta,      ///< by the one before; libdraco's from speed 4 on
+  Geometric,  ///< by the triangles around; libdraco's below speed 4
+};
+
 struct DracoSettings {
-  /// 0 (smallest) .. 10 (fastest). 4 takes 10 % fewer bytes than 7 and 8 % more time; above 7 tiles grow by a third
-  /// for 3 % less time.
+  /// 0 (smallest) .. 10 (fastest). By libdraco 4 takes 10 % fewer bytes than 7 and 8 % more time, and above 7 tiles
+  /// grow by a third for 3 % less time; by a DracoTemplate 4 to 10 take the same time.
   int speed = 7;
   int normalBits = 8;  ///< octahedral, 2..16
+  /// Only a DracoTemplate can choose these, and any decoder of Draco reads them; encodeDraco predicts as libdraco does
+  /// at the speed, whatever they say.
+  DracoPrediction prediction = DracoPrediction::StockAtSpeed;
+  DracoNormals normals = DracoNormals::StockAtSpeed;
 };
 
 struct DracoBuffer {

@@ -22,7 +22,7 @@ void appendParameters(std::string& out, std::span<const ParameterSpec> schema, c
   }
 }
 
-void appendBody(std::string& out, const Body& body, const BodyInfo& info) {
+void appendBody(std::string& out, const Body& body, const BodyInfo& info, const std::string& whyStockDraco) {
   const FieldRow& field = fieldRow(body.field);
   fmt::format_to(std::back_inserter(out),
                  "  {}: radius {}, levels 0 to {}, heights {} to {}, revision {}\n"
@@ -32,6 +32,8 @@ void appendBody(std::string& out, const Body& body, const BodyInfo& info) {
                  formatQuantity(info.selection.heights.maxMeters, Quantity::Length), info.revision, field.name,
                  field.summary, body.seed);
   appendParameters(out, field.parameters, body.fieldParameters);
+  fmt::format_to(std::back_inserter(out), "    tiles are encoded by {}\n",
+                 whyStockDraco.empty() ? "a template learnt from libdraco" : "libdraco: " + whyStockDraco);
 }
 
 void appendEffect(std::string& out, const EffectRow& row, const Scene& scene) {
@@ -55,7 +57,8 @@ std::string explainScene(const Scene& scene, const TileService::Options& options
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
 
   std::string out = fmt::format("scene {}{}{}\nbodies\n", scene.name, scene.summary.empty() ? "" : ": ", scene.summary);
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) appendBody(out, scene.bodies[i], service.scene().bodies[i]);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    appendBody(out, scene.bodies[i], service.scene().bodies[i], service.whyStockDraco()[i]);
   out += "effects\n";
   for (const EffectRow& row : effectTable()) appendEffect(out, row, scene);
   fmt::format_to(std::back_inserter(out), "constructed by this server in {:.1f} ms\n", took.count());

@@ -69,6 +69,18 @@ void watchSignals(HttpServer* server, TileService* service) {
   _exit(kExitFailed);
 }
 
+/// What encodes each body's tiles; a warning where it is not what was asked for.
+void logCoders(const TileService& service, DracoCoder wanted) {
+  for (std::size_t i = 0; i < service.whyStockDraco().size(); ++i) {
+    const std::string &body = service.scene().bodies[i].name, &why = service.whyStockDraco()[i];
+    if (why.empty())
+      spdlog::info("{}: tiles are encoded by a template learnt from libdraco", body);
+    else
+      spdlog::log(wanted == DracoCoder::Stock ? spdlog::level::info : spdlog::level::warn,
+                  "{}: every tile is encoded by libdraco: {}", body, why);
+  }
+}
+
 int serve(const Scene& scene, const ServerSettings& settings) {
   keepFreedMemory(kHeapKeptByServer);
   raiseDescriptorLimit(settings.http.maxConnections);
@@ -86,6 +98,7 @@ int serve(const Scene& scene, const ServerSettings& settings) {
   for (const std::string& url : (*server)->urls()) urls += " " + url;
   printOut(fmt::format("terrane-server: serving {} on{}\n", scene.name, urls));
   spdlog::info("memory cache {}", formatByteSize(settings.service.memoryCacheBytes));
+  logCoders(service, settings.service.draco);
   (*server)->run();
 
   const TileCacheStats stats = service.cacheStats();

@@ -35,6 +35,7 @@ constexpr const char* kDescription =
 struct RawOptions {
   std::string memoryCache = "256MiB";
   std::string simd;
+  std::string draco = "fast";
   std::string maxHeader = "8KiB";
   std::string config;
   double headerTimeout = 10, idleTimeout = 60, writeTimeout = 30, responseTimeout = 60, shutdownGrace = 5;
@@ -91,6 +92,12 @@ void addOptions(CLI::App& app, ServerSettings& settings, RawOptions& raw) {
          "Vector instructions for the height field: default, v3 (AVX2) or v4 (AVX-512). Same tiles, another speed.\n"
          "Without it: the best that this CPU has")
       ->type_name("LEVEL");
+  app.add_option("--draco", raw.draco,
+                 "What encodes tiles: fast (what all tiles share is learnt from libdraco once, and checked) or stock\n"
+                 "(libdraco for each). Same tiles, another speed")
+      ->check(CLI::IsMember({"fast", "stock"}))
+      ->type_name("CODER")
+      ->capture_default_str();
   app.add_option("--max-connections", settings.http.maxConnections, "Connections at once; beyond that they get 503")
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("N")
@@ -154,6 +161,7 @@ Result<void> finish(ServerSettings& settings, const RawOptions& raw) {
       return makeError(ErrorKind::Unsupported, "--simd", fmt::format("this CPU has no \"{}\"", raw.simd));
     settings.service.simd = *simd;
   }
+  settings.service.draco = raw.draco == "stock" ? DracoCoder::Stock : DracoCoder::Fast;
   settings.http.headerTimeout = milliseconds(raw.headerTimeout);
   settings.http.idleTimeout = milliseconds(raw.idleTimeout);
   settings.http.writeTimeout = milliseconds(raw.writeTimeout);

@@ -145,14 +145,17 @@ struct TileBuilder::State {
   std::vector<LevelAccuracy> levels;
   std::shared_ptr<const TileTopology> topology;
   std::shared_ptr<const DracoTemplate> draco;  ///< of all its tiles; null where libdraco must do it alone
+  std::string whyStockDraco;
   mutable ScratchPool scratch;
 
   Result<Tile> buildMesh(const FacePath& path, BuildScratch& scratchMemory, BuildTimes& times) const;
+  void learnDraco(const Result<Tile>& model, DracoCoder coder);
   Result<void> checkPath(const FacePath& path) const;
   void describe(const FacePath& path, const BuildScratch& memory, TileMetadata& metadata) const;
 };
 
-TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(std::make_unique<State>()) {
+TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd, DracoCoder coder)
+    : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.body = std::move(body);
   if (!state.body.schemes.empty()) state.scheme = state.body.schemes.front();
@@ -179,8 +182,7 @@ TileBuilder::TileBuilder(Body body, WireSettings wire, SimdPath simd) : state_(s
   for (const LevelAccuracy& level : state.levels) selection.geometricErrorMeters.push_back(level.geometricErrorMeters);
 
   const FacePath first = FacePath::wholeFace(state.scheme, 0);
-  if (const Result<Tile> model = buildMesh(first); model.has_value())
-    state.draco = DracoTemplate::learn(model->mesh, wire.draco);
+  state.learnDraco(buildMesh(first), coder);
 
   const Result<BuiltTile> probe = build(first);
   state.info.revision =
@@ -193,6 +195,19 @@ TileBuilder::TileBuilder(TileBuilder&&) noexcept = default;
 
 const Body& TileBuilder::body() const noexcept { return state_->body; }
 const BodyInfo& TileBuilder::info() const noexcept { return state_->info; }
+const std::string& TileBuilder::whyStockDraco() const noexcept { return state_->whyStockDraco; }
+
+void TileBuilder::State::learnDraco(const Result<Tile>& model, DracoCoder coder) {
+  if (coder == DracoCoder::Stock) {
+    whyStockDraco = "as told";
+  } else if (!model) {
+    whyStockDraco = model.error().text();
+  } else if (auto learnt = DracoTemplate::learn(model->mesh, wire.draco); learnt) {
+    draco = *std::move(learnt);
+  } else {
+    whyStockDraco = learnt.error().text();
+  }
+}
 
 Result<void> TileBuilder::State::checkPath(const FacePath& path) const {
   if (path.scheme() != scheme)

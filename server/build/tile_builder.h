@@ -27,6 +27,9 @@ struct WireSettings {
   DracoSettings draco;
 };
 
+/// What encodes a body's tiles, to the same bytes: a template learnt from libdraco once, or libdraco for each tile.
+enum class DracoCoder : std::uint8_t { Fast, Stock };
+
 struct BuildTimes {
   double fieldMs = 0, meshMs = 0, dracoMs = 0, glbMs = 0;
 };
@@ -39,12 +42,14 @@ struct BuiltTile {
 class TileBuilder {
  public:
   /// The scheme is the first of the body's, the cube if it names none.
-  TileBuilder(Body body, WireSettings wire, SimdPath simd);
+  TileBuilder(Body body, WireSettings wire, SimdPath simd, DracoCoder coder = DracoCoder::Fast);
   ~TileBuilder();
   TileBuilder(TileBuilder&&) noexcept;
 
   const Body& body() const noexcept;
   const BodyInfo& info() const noexcept;  ///< as scene.json gives it, with the revision
+  /// Why libdraco encodes every tile; empty where a template does.
+  const std::string& whyStockDraco() const noexcept;
 
   /// The mesh before encoding. Errors: InvalidArgument (path deeper than the body's cap, wrong scheme), TooLarge
   /// (relief beyond what 16 bits of the lattice hold: more than about one tile's width within a tile, which no lunar

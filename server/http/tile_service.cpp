@@ -175,6 +175,7 @@ struct TileService::State {
   const SceneInfo scene;
   const BuildTile build;
   const Document sceneJson, page;
+  std::vector<std::string> whyStockDraco;
   std::atomic<bool> ready{true};
   WorkerPool workers;
   TileCache cache;
@@ -215,8 +216,10 @@ TileService::TileService(const SceneInfo& scene, BuildTile build, const Options&
 TileService::TileService(const Scene& scene, const Options& options) {
   auto builders = std::make_shared<std::vector<TileBuilder>>();
   SceneInfo info{scene.name, scene.summary, {}, scene.effects};
+  std::vector<std::string> whyStockDraco;
   for (const Body& body : scene.bodies) {
-    builders->emplace_back(body, options.wire, options.simd);
+    builders->emplace_back(body, options.wire, options.simd, options.draco);
+    whyStockDraco.push_back(builders->back().whyStockDraco());
     info.bodies.push_back(builders->back().info());
   }
   BuildTile build = [builders](const TileKey& key) -> Result<std::vector<std::uint8_t>> {
@@ -228,6 +231,7 @@ TileService::TileService(const Scene& scene, const Options& options) {
     return std::move(built->glb);
   };
   state_ = std::make_unique<State>(std::move(info), std::move(build), options);
+  state_->whyStockDraco = std::move(whyStockDraco);
 }
 
 TileService::~TileService() = default;
@@ -274,5 +278,7 @@ void TileService::setReady(bool ready) { state_->ready = ready; }
 TileCacheStats TileService::cacheStats() const { return state_->cache.stats(); }
 
 const SceneInfo& TileService::scene() const noexcept { return state_->scene; }
+
+const std::vector<std::string>& TileService::whyStockDraco() const noexcept { return state_->whyStockDraco; }
 
 }  // namespace terrane

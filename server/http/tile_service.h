@@ -58,6 +58,7 @@ class TileService {
     int threads = 0;  ///< builders; 0: one for each hardware thread
     std::size_t maxQueuedBuilds = 4096;
     SimdPath simd = SimdPath::Default;
+    DracoCoder draco = DracoCoder::Fast;
     WireSettings wire;
   };
   /// Makes the bytes of a tile of scene.bodies[key.bodyIndex]; called from the workers.
@@ -80,6 +81,8 @@ class TileService {
   void setReady(bool ready);
   TileCacheStats cacheStats() const;
   const SceneInfo& scene() const noexcept;
+  /// Of each body: TileBuilder::whyStockDraco. None where a function makes the tiles.
+  const std::vector<std::string>& whyStockDraco() const noexcept;
 
  private:
   struct State;

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "proto/gltf_tile.h"
 #include "proto/scene_json.h"
@@ -42,6 +44,24 @@ void writeTiles(const std::filesystem::path& corpus) {
           writeTile(corpus, {.path = path, .cellsPerEdge = cells, .skirts = skirts, .colors = colors});
 }
 
+/// fuzz_draco_template's layout: settings, then values.
+void writeValues(const std::filesystem::path& corpus) {
+  const std::vector<std::pair<std::string, std::vector<std::uint8_t>>> kinds{
+      {"alike", {7, 70}}, {"ends", {0, 0, 255, 255, 127, 128}}, {"ramp", {1, 0, 2, 0, 3, 0, 5, 0, 8, 0, 13, 0}}};
+  for (const int speed : {2, 4, 7, 10}) {
+    for (int predictions = 0; predictions < 9; ++predictions) {
+      for (const auto& [name, values] : kinds) {
+        std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(speed), 6, static_cast<std::uint8_t>(predictions),
+                                        static_cast<std::uint8_t>(speed + predictions)};
+        bytes.insert(bytes.end(), values.begin(), values.end());
+        write(corpus / "fuzz_draco_template_seeds" /
+                  (name + "_speed" + std::to_string(speed) + "_" + std::to_string(predictions)),
+              bytes);
+      }
+    }
+  }
+}
+
 void writeScene(const std::filesystem::path& corpus) {
   terrane::BodyInfo body;
   body.name = "moon";
@@ -75,6 +95,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   writeTiles(argv[1]);
+  writeValues(argv[1]);
   writeScene(argv[1]);
   writeTargets(argv[1]);
   return 0;

@@ -58,6 +58,21 @@ TEST(ServerProgram, TheSecondTimeATileIsTheSameBytesFromMemory) {
   EXPECT_EQ(test::httpGet(server.url(), target, "If-None-Match: " + first->fields.at("etag") + "\r\n")->status, 304);
 }
 
+TEST(ServerProgram, BothCodersOfDracoServeTheSameTilesAndSayWhichTheyAre) {
+  ServerProcess fast({"--scene", "moon"}), stock({"--scene", "moon", "--draco", "stock"});
+  for (const FacePath& path : {FacePath::wholeFace(Scheme::Cube, 4), FacePath::cubeTile(1, 11, 700, 1500)}) {
+    const auto a = test::httpGet(fast.url(), tileTargetOf(fast, path)),
+               b = test::httpGet(stock.url(), tileTargetOf(stock, path));
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->status, 200);
+    EXPECT_TRUE(a->body == b->body) << path.text();
+  }
+  fast.signal(SIGTERM);
+  stock.signal(SIGTERM);
+  EXPECT_THAT(fast.wait().standardError, HasSubstr("moon: tiles are encoded by a template learnt from libdraco"));
+  EXPECT_THAT(stock.wait().standardError, HasSubstr("moon: every tile is encoded by libdraco: as told"));
+}
+
 // A client has many requests under way on one connection. What it gets before the server ends is whole, and says that
 // it is the end.
 TEST(ServerProgram, SigtermWhileRequestsAreUnderWayAnswersThemAndExitsWithZero) {
@@ -146,6 +161,7 @@ TEST(ServerProgram, EveryWrongFlagIsOneLineThatNamesItAndExitsWithTwo) {
       {{"--scene", "smooth", "--io-threads", "0"}, "--io-threads"},
       {{"--scene", "smooth", "--cells", "63"}, "--cells"},
       {{"--scene", "smooth", "--simd", "v9"}, "--simd"},
+      {{"--scene", "smooth", "--draco", "slow"}, "--draco"},
       {{"--scene", "smooth", "--max-header", "1"}, "--max-header"},
       {{"--scene", "smooth", "--header-timeout", "0"}, "--header-timeout"},
       {{"--scene", "smooth", "--write-timeout", "nan"}, "--write-timeout"},
@@ -169,8 +185,8 @@ TEST(ServerProgram, EveryWrongFlagIsOneLineThatNamesItAndExitsWithTwo) {
 TEST(ServerProgram, HelpExplainsEveryFlag) {
   const FinishedProcess help = runServer({"--help"});
   EXPECT_EQ(help.exitStatus, 0);
-  for (const char* flag : {"--scene", "--listen", "--threads", "--io-threads", "--memory-cache", "--simd", "--cells",
-                           "--config", "--check", "--explain", "--version", "--shutdown-grace"})
+  for (const char* flag : {"--scene", "--listen", "--threads", "--io-threads", "--memory-cache", "--simd", "--draco",
+                           "--cells", "--config", "--check", "--explain", "--version", "--shutdown-grace"})
     EXPECT_THAT(help.standardOutput, HasSubstr(flag));
   EXPECT_THAT(help.standardOutput, HasSubstr("256MiB"));
   EXPECT_THAT(help.standardOutput, HasSubstr("Exit status"));

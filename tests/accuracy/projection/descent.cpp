@@ -121,10 +121,8 @@ double meshRadiusMeters(const FacePath& path, const MeshedTile& tile, int cellsP
 
 DescentTiles::DescentTiles(const std::string& sceneName)
     : builder_(shippedScene(sceneName).body, WireSettings{}, bestSimdPath()),
-      draco_(DracoTemplate::learn(require(builder_.buildMesh(FacePath::wholeFace(scheme(), 0))).mesh,
-                                  WireSettings{}.draco)) {
-  if (!draco_) throw std::runtime_error(sceneName + ": libdraco must encode its tiles alone");
-}
+      draco_(require(DracoTemplate::learn(require(builder_.buildMesh(FacePath::wholeFace(scheme(), 0))).mesh,
+                                          WireSettings{}.draco))) {}
 
 const MeshedTile& DescentTiles::tile(const FacePath& path) {
   const auto [found, isNew] = tiles_.try_emplace(path);
