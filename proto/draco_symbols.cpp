@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 namespace terrane {
 namespace {
@@ -12,11 +11,7 @@ static_assert(std::endian::native == std::endian::little);
 constexpr std::uint8_t kTagged = 0, kRaw = 1;
 constexpr int kTagBits = 5;
 constexpr int kMostRawBits = 18;
-/// Above, a slot stands for several places, and a symbol is searched for from where the slot's first lies.
-constexpr int kSlotBits = 13;
 constexpr std::size_t kMostSymbols = 1u << kMostRawBits;
-/// Bits that one entry's tag may ask for: the values of this project have 17 at most.
-constexpr std::uint32_t kMostTag = 32;
 
 constexpr int precisionBitsOf(int symbolBits) { return std::clamp(3 * symbolBits / 2, 12, 20); }
 
@@ -31,24 +26,12 @@ bool takeState(const std::uint8_t* first, const std::uint8_t*& end, int mostByte
   return true;
 }
 
-std::uint64_t loadWord(const std::uint8_t* at) {
-  std::uint64_t word = 0;
-  std::memcpy(&word, at, sizeof(word));
-  return word;
-}
-
 }  // namespace
 
-bool DracoSymbols::read(DracoBytes& bytes, std::size_t components, std::span<std::uint32_t> out) {
-  std::uint8_t scheme = 0;
-  if (!bytes.take(scheme)) return false;
-  if (scheme == kTagged) return readTagged(bytes, components, out);
-  return scheme == kRaw && readRaw(bytes, out);
-}
-
-bool DracoSymbols::readTable(DracoBytes& bytes, int precisionBits) {
+bool DracoSymbolTable::read(DracoBytes& bytes, int precisionBits) {
   std::uint32_t count = 0;
   if (!bytes.takeVarint(count) || count > kMostSymbols) return false;
+  precisionBits_ = precisionBits;
   symbols_.clear();
   const std::uint32_t precision = 1u << precisionBits;
   std::uint32_t sum = 0;
@@ -73,89 +56,64 @@ bool DracoSymbols::readTable(DracoBytes& bytes, int precisionBits) {
   }
   if (sum != precision || symbols_.size() > UINT16_MAX) return false;
   symbols_.push_back({sum, 0, 0});
-  fillSlots(precisionBits);
+  precisionBits == kDirectBits ? fillPlaces() : fillSlots();
   return true;
 }
 
-void DracoSymbols::fillSlots(int precisionBits) {
-  const int slotBits = std::min(precisionBits, kSlotBits);
-  const int shift = precisionBits - slotBits;
-  slots_.resize(std::size_t{1} << slotBits);
+void DracoSymbolTable::fillPlaces() {
+  places_.resize(std::size_t{1} << kDirectBits);
+  Place* place = places_.data();
+  for (std::size_t i = 0; i + 1 < symbols_.size(); ++i) {
+    const auto probability = static_cast<std::uint16_t>(symbols_[i].probability);
+    for (std::uint16_t within = 0; within < probability; ++within) *place++ = {symbols_[i].value, probability, within};
+  }
+}
+
+void DracoSymbolTable::fillSlots() {
+  const int shift = precisionBits_ - kSlotBits;
+  slots_.resize(std::size_t{1} << kSlotBits);
   std::uint16_t* slot = slots_.data();
   for (std::size_t i = 0; i + 1 < symbols_.size(); ++i) {
-    // A slot belongs to the symbol that its first place belongs to.
     std::uint16_t* const end = slots_.data() + ((symbols_[i + 1].cumulative + (1u << shift) - 1) >> shift);
     if (slot < end) std::fill(slot, end, static_cast<std::uint16_t>(i));
     slot = std::max(slot, end);
   }
 }
 
-template <class T>
-bool DracoSymbols::readCoded(DracoBytes& bytes, int precisionBits, std::span<T> out) const {
+bool DracoSymbols::begin(DracoBytes& bytes, std::size_t components, std::size_t entries) {
+  std::uint8_t scheme = 0, symbolBits = 0;
+  if (!bytes.take(scheme)) return false;
+  tagged_ = scheme == kTagged;
+  if (tagged_) return beginTagged(bytes, components, entries);
+  if (scheme != kRaw || !bytes.take(symbolBits) || symbolBits < 1 || symbolBits > kMostRawBits) return false;
+  return beginCoded(bytes, precisionBitsOf(symbolBits));
+}
+
+bool DracoSymbols::beginCoded(DracoBytes& bytes, int precisionBits) {
   std::uint32_t size = 0;
-  if (!bytes.takeVarint(size)) return false;
-  const std::uint8_t* const first = bytes.data();
-  if (!bytes.skip(size)) return false;
-  return precisionBits <= kSlotBits ? decode<true>(first, first + size, precisionBits, out)
-                                    : decode<false>(first, first + size, precisionBits, out);
+  if (!table_.read(bytes, precisionBits) || !bytes.takeVarint(size)) return false;
+  const std::uint8_t *const first = bytes.data(), *end = first + size;
+  if (!bytes.skip(size) || !takeState(first, end, 4, state_)) return false;
+  const std::uint32_t base = 4u << precisionBits;
+  state_ += base;
+  coded_ = {first, end};
+  return state_ >> 8 < base;
 }
 
-template <bool kFineSlots, class T>
-bool DracoSymbols::decode(const std::uint8_t* first, const std::uint8_t* end, int precisionBits,
-                          std::span<T> out) const {
-  const std::uint32_t base = 4u << precisionBits, mask = (1u << precisionBits) - 1;
-  std::uint32_t state = 0;
-  if (!takeState(first, end, 4, state)) return false;
-  state += base;
-  if (state >> 8 >= base) return false;
-  const Symbol* const symbols = symbols_.data();
-  const std::uint16_t* const slots = slots_.data();
-  const std::uint8_t* at = end;
-  for (T& value : out) {
-    // Up to three bytes, the last first: the state is never below 4. What lies before the data is the stream's head.
-    const unsigned need = (state < base) + (state < base >> 8) + (state < base >> 16);
-    std::uint32_t word = 0;
-    std::memcpy(&word, at - 4, sizeof(word));
-    state = state << (8 * need) | static_cast<std::uint32_t>(static_cast<std::uint64_t>(word) >> (32 - 8 * need));
-    at -= need;
-    if (at < first) return false;
-    const std::uint32_t place = state & mask;
-    const Symbol* symbol = symbols + slots[kFineSlots ? place : place >> (precisionBits - kSlotBits)];
-    if constexpr (!kFineSlots) {
-      while (place >= symbol[1].cumulative) ++symbol;
-    }
-    value = static_cast<T>(symbol->value);
-    state = (state >> precisionBits) * symbol->probability + place - symbol->cumulative;
-  }
-  return true;
-}
-
-bool DracoSymbols::readTagged(DracoBytes& bytes, std::size_t components, std::span<std::uint32_t> out) {
-  const int precisionBits = precisionBitsOf(kTagBits);
-  if (!readTable(bytes, precisionBits) || symbols_[symbols_.size() - 2].value > kMostTag) return false;
-  tags_.resize(out.size() / components);
-  if (!readCoded(bytes, precisionBits, std::span(tags_))) return false;
+bool DracoSymbols::beginTagged(DracoBytes& bytes, std::size_t components, std::size_t entries) {
+  static_assert(precisionBitsOf(kTagBits) == DracoSymbolTable::kDirectBits);
+  if (!beginCoded(bytes, DracoSymbolTable::kDirectBits) || table_.greatestValue() > DracoTaggedSymbols::kMostTag)
+    return false;
+  tags_.resize(entries);
+  DracoCodedSymbols<true> tags(table_, coded_, state_);
   std::size_t bits = 0;
-  for (const std::uint8_t tag : tags_) bits += tag * components;
-  const std::uint8_t* const first = bytes.data();
-  // After the bits a range follows, so that whole words can be loaded.
-  if (!bytes.skip((bits + 7) / 8) || bytes.left() < sizeof(std::uint64_t)) return false;
-  std::size_t at = 0;
-  std::uint32_t* value = out.data();
-  for (const std::uint8_t tag : tags_) {
-    const std::uint64_t mask = (std::uint64_t{1} << tag) - 1;
-    for (std::size_t c = 0; c < components; ++c, at += tag) {
-      *value++ = static_cast<std::uint32_t>(loadWord(first + at / 8) >> (at % 8) & mask);
-    }
+  for (std::uint8_t& tag : tags_) {
+    tag = static_cast<std::uint8_t>(tags.next());
+    bits += tag;
   }
-  return true;
-}
-
-bool DracoSymbols::readRaw(DracoBytes& bytes, std::span<std::uint32_t> out) {
-  std::uint8_t symbolBits = 0;
-  if (!bytes.take(symbolBits) || symbolBits < 1 || symbolBits > kMostRawBits) return false;
-  const int precisionBits = precisionBitsOf(symbolBits);
-  return readTable(bytes, precisionBits) && readCoded(bytes, precisionBits, out);
+  bits_ = bytes.data();
+  // After the bits a range follows, so that whole words can be loaded.
+  return tags.ok() && bytes.skip((bits * components + 7) / 8) && bytes.left() >= sizeof(std::uint64_t);
 }
 
 bool DracoFlags::begin(DracoBytes& bytes) {

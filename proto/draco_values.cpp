@@ -85,101 +85,112 @@ class Creases {
   bool ok_ = true;
 };
 
-/// Values of `components` integers a vertex, by vertex.
+template <std::size_t kComponents>
+using Entry = std::array<std::int32_t, kComponents>;
+
 template <std::size_t kComponents, class T>
-class PredictedValues {
- public:
-  PredictedValues(const DracoConnectivity& connectivity, std::vector<T>& values)
-      : connectivity_(connectivity), values_(values) {}
+Entry<kComponents> entryAt(const T* values, std::uint16_t vertex) {
+  Entry<kComponents> entry;
+  std::copy_n(values + kComponents * vertex, kComponents, entry.begin());
+  return entry;
+}
 
-  bool decode(DracoBytes& bytes, DracoScratch& scratch) {
-    const std::size_t count = connectivity_.vertexCount();
-    values_.resize(kComponents * count);
-    scratch.corrections.resize(kComponents * count);
-    Method method{};
-    if (!takeMethod(bytes, Transform::Wrap, method) || !scratch.symbols.read(bytes, kComponents, scratch.corrections))
-      return false;
-    symbols_ = scratch.corrections.data();
-    Creases creases;
-    if (method == Method::ConstrainedMultiParallelogram && !creases.begin(bytes, connectivity_.triangles.size()))
-      return false;
-    if (!Unwrapping::take<T>(bytes, unwrapping_)) return false;
-    correct(0, {});
-    switch (method) {
-      case Method::Difference:
-        byDifference();
-        break;
-      case Method::Parallelogram:
-        byParallelogram();
-        break;
-      case Method::ConstrainedMultiParallelogram:
-        byParallelograms(creases);
-        break;
-      default:
-        return false;
-    }
-    return creases.ok() && unwrapping_.ok();
+// What predicts an entry from those before it. Nothing comes before the first: it is predicted by its own value, which
+// is zero until it is set.
+
+struct ByDifference {
+  const std::uint16_t* vertexOfEntry;
+
+  template <std::size_t kComponents, class T>
+  Entry<kComponents> predict(const T* values, std::size_t entry) const {
+    return entryAt<kComponents>(values, vertexOfEntry[entry == 0 ? 0 : entry - 1]);
   }
-
- private:
-  using Entry = std::array<std::int32_t, kComponents>;
-
-  T* at(std::uint16_t vertex) { return values_.data() + kComponents * vertex; }
-
-  void correct(std::size_t entry, const Entry& predicted) {
-    T* value = at(connectivity_.vertexOfEntry[entry]);
-    for (std::size_t c = 0; c < kComponents; ++c)
-      value[c] = static_cast<T>(unwrapping_(predicted[c], symbols_[kComponents * entry + c]));
-  }
-
-  void byDifference() {
-    for (std::size_t entry = 1; entry < connectivity_.vertexCount(); ++entry) {
-      const T* before = at(connectivity_.vertexOfEntry[entry - 1]);
-      Entry predicted;
-      for (std::size_t c = 0; c < kComponents; ++c) predicted[c] = before[c];
-      correct(entry, predicted);
-    }
-  }
-
-  void add(const DracoParallelogram& by, Entry& sum) {
-    const T *next = at(by.next), *previous = at(by.previous), *opposite = at(by.opposite);
-    for (std::size_t c = 0; c < kComponents; ++c) sum[c] += next[c] + previous[c] - opposite[c];
-  }
-
-  void byParallelogram() {
-    for (std::size_t entry = 1; entry < connectivity_.vertexCount(); ++entry) {
-      Entry predicted{};
-      add(connectivity_.parallelograms[entry], predicted);
-      correct(entry, predicted);
-    }
-  }
-
-  void byParallelograms(Creases& creases) {
-    const DracoParallelogram* parallelogram = connectivity_.multiParallelograms.data();
-    for (std::size_t entry = 1; entry < connectivity_.vertexCount(); ++entry) {
-      const std::size_t count = connectivity_.multiCounts[entry];
-      Entry predicted{};
-      std::int32_t used = 0;
-      for (std::size_t i = 0; i < count; ++i, ++parallelogram) {
-        if (creases.next(count)) continue;
-        add(*parallelogram, predicted);
-        ++used;
-      }
-      if (used == 0) {
-        const T* before = at(connectivity_.vertexOfEntry[entry - 1]);
-        std::copy_n(before, kComponents, predicted.begin());
-      } else if (used > 1) {
-        for (std::int32_t& component : predicted) component /= used;
-      }
-      correct(entry, predicted);
-    }
-  }
-
-  const DracoConnectivity& connectivity_;
-  std::vector<T>& values_;
-  const std::uint32_t* symbols_ = nullptr;
-  Unwrapping unwrapping_;
 };
+
+template <std::size_t kComponents, class T>
+void addParallelogram(const T* values, const DracoParallelogram& by, Entry<kComponents>& sum) {
+  const T *next = values + kComponents * by.next, *previous = values + kComponents * by.previous,
+          *opposite = values + kComponents * by.opposite;
+  for (std::size_t c = 0; c < kComponents; ++c) sum[c] += next[c] + previous[c] - opposite[c];
+}
+
+struct ByParallelogram {
+  const DracoParallelogram* parallelograms;
+
+  template <std::size_t kComponents, class T>
+  Entry<kComponents> predict(const T* values, std::size_t entry) const {
+    Entry<kComponents> predicted{};
+    addParallelogram<kComponents>(values, parallelograms[entry], predicted);
+    return predicted;
+  }
+};
+
+struct ByParallelograms {
+  const std::uint8_t* counts;
+  const DracoParallelogram* next;  ///< of the entry that comes next
+  ByDifference otherwise;
+  Creases creases;
+
+  template <std::size_t kComponents, class T>
+  Entry<kComponents> predict(const T* values, std::size_t entry) {
+    Entry<kComponents> sum{};
+    std::int32_t used = 0;
+    for (const DracoParallelogram* const end = next + counts[entry]; next != end; ++next) {
+      if (creases.next(counts[entry])) continue;
+      addParallelogram<kComponents>(values, *next, sum);
+      ++used;
+    }
+    if (used == 0) return otherwise.predict<kComponents>(values, entry);
+    if (used > 1)
+      for (std::int32_t& component : sum) component /= used;
+    return sum;
+  }
+};
+
+/// Sets every vertex' value. All that the loop needs is its own: bytes that it writes could otherwise be anything's.
+template <std::size_t kComponents, class T, class Predictor, class Symbols>
+bool correct(std::span<const std::uint16_t> vertexOfEntry, Predictor& predictor, Unwrapping unwrapping, Symbols symbols,
+             T* values) {
+  Predictor own = predictor;
+  for (std::size_t entry = 0; entry < vertexOfEntry.size(); ++entry) {
+    const Entry<kComponents> predicted = own.template predict<kComponents>(values, entry);
+    const auto corrections = symbols.template take<kComponents>();
+    T* value = values + kComponents * vertexOfEntry[entry];
+    for (std::size_t c = 0; c < kComponents; ++c) value[c] = static_cast<T>(unwrapping(predicted[c], corrections[c]));
+  }
+  predictor = own;
+  return symbols.ok() && unwrapping.ok();
+}
+
+/// An attribute of kComponents integers a vertex; values by vertex, empty before.
+template <std::size_t kComponents, class T>
+bool decodeIntegers(const DracoConnectivity& connectivity, DracoBytes& bytes, DracoSymbols& symbols,
+                    std::vector<T>& values) {
+  Method method{};
+  if (!takeMethod(bytes, Transform::Wrap, method) || !symbols.begin(bytes, kComponents, connectivity.vertexCount()))
+    return false;
+  Creases creases;
+  if (method == Method::ConstrainedMultiParallelogram && !creases.begin(bytes, connectivity.triangles.size()))
+    return false;
+  Unwrapping unwrapping;
+  if (!Unwrapping::take<T>(bytes, unwrapping)) return false;
+  values.resize(kComponents * connectivity.vertexCount());
+  const auto correctBy = [&](auto& predictor) {
+    return symbols.read([&](auto reader) {
+      return correct<kComponents>(connectivity.vertexOfEntry, predictor, unwrapping, reader, values.data());
+    });
+  };
+  ByDifference difference{connectivity.vertexOfEntry.data()};
+  if (method == Method::Difference) return correctBy(difference);
+  if (method == Method::Parallelogram) {
+    ByParallelogram one{connectivity.parallelograms.data()};
+    return correctBy(one);
+  }
+  if (method != Method::ConstrainedMultiParallelogram) return false;
+  ByParallelograms several{connectivity.multiCounts.data(), connectivity.multiParallelograms.data(), difference,
+                           creases};
+  return correctBy(several) && several.creases.ok();
+}
 
 /// Twice the area of every triangle along its normal: exact, for components are below 2^34.
 void findTriangleNormals(const DracoConnectivity& connectivity, const std::vector<std::uint16_t>& offsets,
@@ -230,68 +241,68 @@ class Normals {
   int bits() const noexcept { return bits_; }
 
   bool decode(DracoBytes& bytes, DracoScratch& scratch) {
-    std::vector<std::uint32_t>& corrections = scratch.corrections;
-    corrections.resize(2 * connectivity_.vertexCount());
     Method method{};
-    if (!takeMethod(bytes, Transform::CanonicalOctahedron, method) || !scratch.symbols.read(bytes, 2, corrections))
-      return false;
     std::int32_t mostQuantized = 0, center = 0;
-    if (!bytes.take(mostQuantized) || !bytes.take(center)) return false;
+    if (!takeMethod(bytes, Transform::CanonicalOctahedron, method) ||
+        !scratch.symbols.begin(bytes, 2, connectivity_.vertexCount()) || !bytes.take(mostQuantized) ||
+        !bytes.take(center))
+      return false;
     bits_ = std::bit_width(static_cast<std::uint32_t>(mostQuantized));
     if (bits_ < 2 || bits_ > 16 || mostQuantized != (1 << bits_) - 1 || center != mostQuantized / 2) return false;
-    const auto greatest = static_cast<std::uint32_t>(mostQuantized - 1);
-    if (std::ranges::max(corrections) > greatest) return false;
     mesh_.normals.resize(3 * connectivity_.vertexCount());
-    toolBox_.SetQuantizationBits(bits_);
-    if (method == Method::Difference) {
-      byDifference(corrections);
-      return true;
-    }
-    return method == Method::GeometricNormal && byGeometry(bytes, scratch);
+    if (method == Method::Difference) return scratch.symbols.read([&](auto reader) { return byDifference(reader); });
+    DracoFlags flips;
+    if (method != Method::GeometricNormal || !flips.begin(bytes)) return false;
+    findTriangleNormals(connectivity_, mesh_.offsets, scratch.triangleNormals);
+    return scratch.symbols.read([&](auto reader) { return byGeometry(reader, flips, scratch.triangleNormals.data()); });
   }
 
  private:
-  static OctahedralPoint correctionOf(const std::vector<std::uint32_t>& corrections, std::size_t entry) {
-    return {static_cast<std::int32_t>(corrections[2 * entry]), static_cast<std::int32_t>(corrections[2 * entry + 1])};
-  }
-
-  void set(std::size_t entry, OctahedralPoint at) {
-    float* normal = mesh_.normals.data() + 3 * static_cast<std::size_t>(connectivity_.vertexOfEntry[entry]);
-    toolBox_.QuantizedOctahedralCoordsToUnitVector(at.s, at.t, normal);
-  }
-
-  void byDifference(const std::vector<std::uint32_t>& corrections) {
+  /// Calls predict with the entry before and the entry's number.
+  template <class Symbols, class Predict>
+  bool correct(Symbols symbols, Predict predict) {
     const DracoOctahedron octahedron(bits_);
+    draco::OctahedronToolBox toolBox;
+    toolBox.SetQuantizationBits(bits_);
+    const auto greatest = static_cast<std::uint32_t>(octahedron.greatest());
+    bool outside = false;
     OctahedralPoint at;
-    for (std::size_t entry = 0; entry < connectivity_.vertexCount(); ++entry) {
-      at = octahedron.corrected(at, correctionOf(corrections, entry));
-      set(entry, at);
+    float* const normals = mesh_.normals.data();
+    const std::span<const std::uint16_t> vertexOfEntry = connectivity_.vertexOfEntry;
+    for (std::size_t entry = 0; entry < vertexOfEntry.size(); ++entry) {
+      const OctahedralPoint predicted = predict(at, entry, octahedron);
+      const auto [s, t] = symbols.template take<2>();
+      outside |= s > greatest || t > greatest;
+      at = octahedron.corrected(predicted, {static_cast<std::int32_t>(std::min(s, greatest)),
+                                            static_cast<std::int32_t>(std::min(t, greatest))});
+      toolBox.QuantizedOctahedralCoordsToUnitVector(at.s, at.t, normals + 3 * vertexOfEntry[entry]);
     }
+    return symbols.ok() && !outside;
   }
 
-  bool byGeometry(DracoBytes& bytes, DracoScratch& scratch) {
-    DracoFlags flips;
-    if (!flips.begin(bytes)) return false;
-    findTriangleNormals(connectivity_, mesh_.offsets, scratch.triangleNormals);
-    const DracoOctahedron octahedron(bits_);
+  template <class Symbols>
+  bool byDifference(Symbols symbols) {
+    return correct(symbols, [](OctahedralPoint before, std::size_t, const DracoOctahedron&) { return before; });
+  }
+
+  template <class Symbols>
+  bool byGeometry(Symbols symbols, DracoFlags flips, const double* triangleNormals) {
     const std::uint16_t* triangle = connectivity_.trianglesAround.data();
-    for (std::size_t entry = 0; entry < connectivity_.vertexCount(); ++entry) {
+    const std::uint8_t* const counts = connectivity_.trianglesAroundCounts.data();
+    return correct(symbols, [=](OctahedralPoint, std::size_t entry, const DracoOctahedron& octahedron) mutable {
       double x = 0, y = 0, z = 0;
-      for (int i = 0; i < connectivity_.trianglesAroundCounts[entry]; ++i, ++triangle) {
-        const double* normal = scratch.triangleNormals.data() + 3 * static_cast<std::size_t>(*triangle);
+      for (const std::uint16_t* const end = triangle + counts[entry]; triangle != end; ++triangle) {
+        const double* normal = triangleNormals + 3 * static_cast<std::size_t>(*triangle);
         x += normal[0];
         y += normal[1];
         z += normal[2];
       }
-      const OctahedralPoint predicted = geometricNormal(x, y, z, flips.next(), octahedron);
-      set(entry, octahedron.corrected(predicted, correctionOf(scratch.corrections, entry)));
-    }
-    return true;
+      return geometricNormal(x, y, z, flips.next(), octahedron);
+    });
   }
 
   const DracoConnectivity& connectivity_;
   TileMesh& mesh_;
-  draco::OctahedronToolBox toolBox_;
   int bits_ = 0;
 };
 
@@ -301,7 +312,7 @@ bool decodeGrid(const DracoConnectivity& connectivity, DracoBytes& bytes, DracoS
     mesh.gridIndices = connectivity.gridIndices;
     return true;
   }
-  return PredictedValues<1, std::uint16_t>(connectivity, mesh.gridIndices).decode(bytes, scratch);
+  return decodeIntegers<1>(connectivity, bytes, scratch.symbols, mesh.gridIndices);
 }
 
 /// After all values: how positions and normals are quantised. Positions by whole steps: origin 0, range 65535, 16 bits.
@@ -319,10 +330,9 @@ std::optional<TileMesh> decode(const DracoConnectivity& connectivity, std::span<
   TileMesh mesh;
   DracoBytes bytes(stream, connectivity.headBytes);
   Normals normals(connectivity, mesh);
-  if (!PredictedValues<3, std::uint16_t>(connectivity, mesh.offsets).decode(bytes, scratch)) return std::nullopt;
+  if (!decodeIntegers<3>(connectivity, bytes, scratch.symbols, mesh.offsets)) return std::nullopt;
   if (!normals.decode(bytes, scratch)) return std::nullopt;
-  if (connectivity.colors && !PredictedValues<3, std::uint8_t>(connectivity, mesh.colors).decode(bytes, scratch))
-    return std::nullopt;
+  if (connectivity.colors && !decodeIntegers<3>(connectivity, bytes, scratch.symbols, mesh.colors)) return std::nullopt;
   const std::size_t gridBegin = bytes.position();
   if (!decodeGrid(connectivity, bytes, scratch, mesh)) return std::nullopt;
   gridBytes = bytes.since(gridBegin);

@@ -5,18 +5,17 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <utility>
+#include <vector>
 
 #include "proto/draco_connectivity.h"
 #include "proto/draco_symbols.h"
 
 namespace terrane {
 
-/// Working memory, reused from tile to tile: 60 bytes a vertex and what the entropy coder's tables take (under a
-/// megabyte). Of one thread at a time.
+/// Working memory, reused from tile to tile: 24 bytes a triangle, and the entropy coder's tables (under a megabyte). Of
+/// one thread at a time.
 struct DracoScratch {
   DracoSymbols symbols;
-  std::vector<std::uint32_t> corrections;
   std::vector<double> triangleNormals;
 };
 
