@@ -5,10 +5,12 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "proto/gltf_tile.h"
 #include "proto/scene_json.h"
 #include "proto/tile_url.h"
+#include "tests/fuzz/draco_heads.h"
 #include "tests/unit/proto/sample_tile.h"
 
 namespace {
@@ -40,6 +42,16 @@ void writeTiles(const std::filesystem::path& corpus) {
       for (const bool skirts : {false, true})
         for (const bool colors : {false, true})
           writeTile(corpus, {.path = path, .cellsPerEdge = cells, .skirts = skirts, .colors = colors});
+}
+
+void writeDracoValues(const std::filesystem::path& corpus) {
+  const auto heads = terrane::fuzz::dracoHeads();
+  for (std::size_t head = 0; head < heads.size(); ++head)
+    for (std::size_t i = 0; i < heads[head].values.size(); ++i) {
+      std::vector<std::uint8_t> seed{static_cast<std::uint8_t>(head)};
+      seed.insert(seed.end(), heads[head].values[i].begin(), heads[head].values[i].end());
+      write(corpus / "fuzz_draco_reader_seeds" / (std::to_string(head) + "_" + std::to_string(i)), seed);
+    }
 }
 
 void writeScene(const std::filesystem::path& corpus) {
@@ -75,6 +87,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   writeTiles(argv[1]);
+  writeDracoValues(argv[1]);
   writeScene(argv[1]);
   writeTargets(argv[1]);
   return 0;

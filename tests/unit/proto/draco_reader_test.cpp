@@ -116,6 +116,14 @@ TEST(DracoReader, GivesTheMeshesOfLibdracoInEverySetting) {
         expectMeshesOfLibdraco(sampleTile({.path = path, .cellsPerEdge = 16}).mesh, {speed, bits}, path.text());
 }
 
+TEST(DracoReader, GivesTheMeshesOfLibdracoInTheOtherWayToCodeConnectivity) {
+  RecordProperty("seed", kSeed);
+  // Below speed 5 the symbols of larger meshes are coded by valence.
+  for (const FacePath& path : kSamplePaths)
+    for (const int speed : {0, 1, 3, 4})
+      expectMeshesOfLibdraco(sampleTile({.path = path}).mesh, {speed, 8}, path.text());
+}
+
 /// Where a stream's values begin: streams of other data have all before in common.
 std::size_t headBytes(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
   return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
