@@ -120,11 +120,6 @@ class Learner {
   std::vector<draco::CornerIndex> around_;  ///< corners at the vertex of the entry in hand
 };
 
-template <class T>
-std::size_t bytesOf(const std::vector<T>& values) {
-  return values.capacity() * sizeof(T);
-}
-
 }  // namespace
 
 std::shared_ptr<DracoConnectivity> DracoConnectivity::learn(const DracoDecoded& decoded, const DracoAttributeIds& ids) {
@@ -137,12 +132,6 @@ std::shared_ptr<DracoConnectivity> DracoConnectivity::learn(const DracoDecoded& 
   learnt->headBytes = head.size();
   learnt->colors = ids.color >= 0;
   return Learner(decoded.decoder, mesh, *learnt).learn() ? learnt : nullptr;
-}
-
-std::size_t DracoConnectivity::memoryBytes() const noexcept {
-  return bytesOf(triangles) + bytesOf(vertexOfEntry) + bytesOf(parallelograms) + bytesOf(multiParallelograms) +
-         bytesOf(multiCounts) + bytesOf(trianglesAround) + bytesOf(trianglesAroundCounts) + bytesOf(gridBytes) +
-         bytesOf(gridIndices);
 }
 
 }  // namespace terrane

@@ -16,25 +16,26 @@ namespace terrane {
 /// that one predicts alone.
 struct DracoParallelogram {
   std::uint16_t next, previous, opposite;
+  bool operator==(const DracoParallelogram&) const = default;
 };
 
 struct DracoConnectivity {
-  /// More vertices are not learnt: half a megabyte for a tile of 64 cells, 3 MB at most (see memoryBytes).
+  /// Larger ones are not learnt. One for a tile of 64 cells takes 0.4 MB, one at these limits 3 MB.
   static constexpr std::size_t kMostVertices = 20000, kMostTriangles = 40000, kMostHeadBytes = 64u << 10;
 
-  /// Null for what Terrane does not write: other
-  /// attributes, another order of them, a vertex without a value of its own; and beyond the limits above.
+  /// Null for what Terrane does not write (other attributes, another order of them, a vertex without a value of its
+  /// own) and beyond the limits above. Throws std::exception where memory or the corner table's own indices run out.
   static std::shared_ptr<DracoConnectivity> learn(const DracoDecoded& decoded, const DracoAttributeIds& ids);
 
   std::size_t vertexCount() const noexcept { return vertexOfEntry.size(); }
-  std::size_t memoryBytes() const noexcept;
+  bool operator==(const DracoConnectivity&) const = default;
 
   std::size_t headBytes = 0;
   bool colors = false;
   std::vector<std::uint32_t> triangles;  ///< 3 vertices each
   /// Entry i of every attribute is the value of this vertex.
   std::vector<std::uint16_t> vertexOfEntry;
-  /// What predicts entry i: its first parallelogram, or the entry before where it has none. Entry 0 has no meaning.
+  /// What predicts entry i: its first parallelogram, or the entry before where it has none. Entry 0 by itself.
   std::vector<DracoParallelogram> parallelograms;
   /// All parallelograms of entry i, up to four: as many as the count says, the entries' lists one after the other.
   std::vector<DracoParallelogram> multiParallelograms;

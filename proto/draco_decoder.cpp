@@ -57,8 +57,8 @@ class GuardedDecoder : public draco::MeshEdgebreakerDecoder {
  public:
   explicit GuardedDecoder(const DracoAttributeIds& ids) : ids_(ids) {}
   const char* refusal() const noexcept { return refusal_; }
-  /// Of the stream, from where the attributes' values begin.
-  std::size_t valueBytes() const noexcept { return valueBytes_; }
+  /// Of the stream, from where the attributes' values begin; none if it did not come so far.
+  std::optional<std::size_t> valueBytes() const noexcept { return valueBytes_; }
 
  protected:
   bool DecodeAllAttributes() override {
@@ -104,7 +104,7 @@ class GuardedDecoder : public draco::MeshEdgebreakerDecoder {
 
   DracoAttributeIds ids_;
   const char* refusal_ = nullptr;
-  std::size_t valueBytes_ = 0;
+  std::optional<std::size_t> valueBytes_;
 };
 
 /// The attribute's value for every point, in order. False if it is absent or smaller than the points say.
@@ -171,7 +171,7 @@ Result<TileMesh> decodeChecked(std::span<const std::uint8_t> bytes, const DracoA
     return malformed("other counts than its header says");
   }
   auto copied = copyMesh(mesh, ids);
-  if (copied && listener) listener({decoder, mesh, bytes.first(bytes.size() - decoder.valueBytes()), *copied});
+  if (copied && listener) listener({decoder, mesh, bytes.first(bytes.size() - *decoder.valueBytes())}, *copied);
   return copied;
 }
 
@@ -210,6 +210,17 @@ Result<TileMesh> decodeDraco(std::span<const std::uint8_t> bytes, const DracoAtt
 Result<TileMesh> decodeDraco(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
                              const DecodeLimits& limits) {
   return decodeDraco(bytes, ids, limits, {});
+}
+
+void decodeDracoConnectivity(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             const std::function<void(const DracoDecoded&)>& listener) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const draco::DecoderOptions options;
+  GuardedDecoder decoder(ids);
+  draco::Mesh mesh;
+  (void)decoder.Decode(options, &buffer, &mesh);
+  if (decoder.valueBytes()) listener({decoder, mesh, bytes.first(bytes.size() - *decoder.valueBytes())});
 }
 
 }  // namespace terrane

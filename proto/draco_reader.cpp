@@ -50,13 +50,28 @@ std::optional<TileMesh> decodeQuickly(const DracoConnectivity& connectivity, std
   }
 }
 
+/// Whether libdraco finds the same connectivity when all bits after the head are others. It lets a head that lies about
+/// its length read on into the values.
+bool dependsOnItsHeadAlone(const DracoConnectivity& learnt, std::span<const std::uint8_t> bytes,
+                           const DracoAttributeIds& ids) {
+  std::vector<std::uint8_t> others(bytes.begin(), bytes.end());
+  for (std::size_t i = learnt.headBytes; i < others.size(); ++i) others[i] = static_cast<std::uint8_t>(~others[i]);
+  bool same = false;
+  decodeDracoConnectivity(others, ids, [&](const DracoDecoded& decoded) {
+    const auto again = DracoConnectivity::learn(decoded, ids);
+    same = again && *again == learnt;
+  });
+  return same;
+}
+
 /// Null unless the stream that it was learnt from decodes to libdraco's mesh.
-std::shared_ptr<const DracoConnectivity> learnChecked(const DracoDecoded& decoded, std::span<const std::uint8_t> bytes,
+std::shared_ptr<const DracoConnectivity> learnChecked(const DracoDecoded& decoded, const TileMesh& mesh,
+                                                      std::span<const std::uint8_t> bytes,
                                                       const DracoAttributeIds& ids) {
   const auto learnt = DracoConnectivity::learn(decoded, ids);
-  if (!learnt) return nullptr;
+  if (!learnt || !dependsOnItsHeadAlone(*learnt, bytes, ids)) return nullptr;
   const auto quick = learnDracoGrid(*learnt, bytes, scratchOfThread());
-  return quick && sameBits(*quick, decoded.tile) ? learnt : nullptr;
+  return quick && sameBits(*quick, mesh) ? learnt : nullptr;
 }
 
 }  // namespace
@@ -74,11 +89,13 @@ struct DracoReader::State {
     return kinds.front();
   }
 
-  void learn(const DracoDecoded& decoded, std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids) {
+  void learn(const DracoDecoded& decoded, const TileMesh& mesh, std::span<const std::uint8_t> bytes,
+             const DracoAttributeIds& ids) {
+    if (decoded.head.size() > DracoConnectivity::kMostHeadBytes) return;
     auto kind = std::make_shared<Kind>();
     kind->head.assign(decoded.head.begin(), decoded.head.end());
     kind->ids = ids;
-    kind->connectivity = learnChecked(decoded, bytes, ids);
+    kind->connectivity = learnChecked(decoded, mesh, bytes, ids);
     const std::lock_guard lock(mutex);
     // Another thread may have learnt the same meanwhile.
     std::erase_if(kinds, [&](const auto& known) { return known->ids == kind->ids && known->head == kind->head; });
@@ -104,9 +121,9 @@ Result<TileMesh> DracoReader::decode(std::span<const std::uint8_t> bytes, const 
   }
   ++state_->byLibdraco;
   if (known) return decodeDraco(bytes, ids, limits);
-  return decodeDraco(bytes, ids, limits, [&](const DracoDecoded& decoded) {
+  return decodeDraco(bytes, ids, limits, [&](const DracoDecoded& decoded, const TileMesh& mesh) {
     try {
-      state_->learn(decoded, bytes, ids);
+      state_->learn(decoded, mesh, bytes, ids);
     } catch (const std::exception&) {
       // Out of memory, or corners that do not exist: the mesh is good, but nothing is learnt from it.
     }
