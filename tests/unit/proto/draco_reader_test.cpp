@@ -8,7 +8,6 @@
 #include <cmath>
 #include <random>
 #include <string>
-#include <thread>
 
 #include "tests/unit/proto/sample_tile.h"
 
@@ -241,33 +240,6 @@ TEST(DracoReader, ForgetsTheKindThatWasNotAskedForLongest) {
   EXPECT_FALSE(isQuick(streams.back()));
   EXPECT_TRUE(isQuick(streams[0]));
   EXPECT_FALSE(isQuick(streams[1]));
-}
-
-TEST(DracoReader, ManyThreadsMayLearnAndReadAtOnce) {
-  DracoReader reader;
-  std::vector<DracoBuffer> streams;
-  std::vector<Result<TileMesh>> expected;
-  for (const int cells : {4, 8, 16})
-    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-      streams.push_back(encodeDraco(sampleMesh(cells, true, true, seed), {}).value());
-      expected.push_back(decodeDraco(streams.back().bytes, idsOf(streams.back()), {}));
-    }
-  constexpr std::size_t kThreads = 4, kRounds = 20;
-  std::vector<std::size_t> wrong(kThreads);
-  std::vector<std::thread> threads;
-  for (std::size_t thread = 0; thread < kThreads; ++thread)
-    threads.emplace_back([&, thread] {
-      for (std::size_t i = 0; i < kRounds * streams.size(); ++i) {
-        const std::size_t which = (i * 5 + thread) % streams.size();
-        const auto mesh = reader.decode(streams[which].bytes, idsOf(streams[which]), {});
-        if (!sameBits(expected[which], mesh)) ++wrong[thread];
-      }
-    });
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(wrong, std::vector<std::size_t>(kThreads));
-  const auto [quick, byLibdraco] = reader.counts();
-  EXPECT_EQ(quick + byLibdraco, kThreads * kRounds * streams.size());
-  EXPECT_LE(byLibdraco, 3 * kThreads) << "each thread learns a kind once at most";
 }
 
 }  // namespace
