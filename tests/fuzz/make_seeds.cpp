@@ -24,6 +24,16 @@ void write(const std::filesystem::path& file, const std::string& text) {
   write(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
+void writeDracoValues(const std::filesystem::path& corpus) {
+  const auto heads = terrane::fuzz::dracoHeads();
+  for (std::size_t head = 0; head < heads.size(); ++head)
+    for (std::size_t i = 0; i < heads[head].values.size(); ++i) {
+      std::vector<std::uint8_t> seed{static_cast<std::uint8_t>(head)};
+      seed.insert(seed.end(), heads[head].values[i].begin(), heads[head].values[i].end());
+      write(corpus / "fuzz_draco_reader_seeds" / (std::to_string(head) + "_" + std::to_string(i)), seed);
+    }
+}
+
 void writeTile(const std::filesystem::path& corpus, const terrane::test::SampleSettings& sample) {
   const terrane::Tile tile = terrane::test::sampleTile(sample);
   for (const int speed : {0, 3, 4, 7, 10}) {
@@ -42,16 +52,6 @@ void writeTiles(const std::filesystem::path& corpus) {
       for (const bool skirts : {false, true})
         for (const bool colors : {false, true})
           writeTile(corpus, {.path = path, .cellsPerEdge = cells, .skirts = skirts, .colors = colors});
-}
-
-void writeDracoValues(const std::filesystem::path& corpus) {
-  const auto heads = terrane::fuzz::dracoHeads();
-  for (std::size_t head = 0; head < heads.size(); ++head)
-    for (std::size_t i = 0; i < heads[head].values.size(); ++i) {
-      std::vector<std::uint8_t> seed{static_cast<std::uint8_t>(head)};
-      seed.insert(seed.end(), heads[head].values[i].begin(), heads[head].values[i].end());
-      write(corpus / "fuzz_draco_reader_seeds" / (std::to_string(head) + "_" + std::to_string(i)), seed);
-    }
 }
 
 void writeScene(const std::filesystem::path& corpus) {
@@ -86,8 +86,8 @@ int main(int argc, char** argv) {
     std::fputs("usage: make_seeds DIRECTORY\n", stderr);
     return 2;
   }
-  writeTiles(argv[1]);
   writeDracoValues(argv[1]);
+  writeTiles(argv[1]);
   writeScene(argv[1]);
   writeTargets(argv[1]);
   return 0;
