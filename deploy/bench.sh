@@ -14,7 +14,7 @@ for argument in "$@"; do
 done
 deploy/install.sh >&2
 cmake --preset release >&2
-cmake --build --preset release --target terrane-server terrane-view terrane-accuracy bench_tile_build bench_planets bench_viewer bench_effects >&2
+cmake --build --preset release --target terrane-server terrane-view terrane-accuracy bench_tile_build bench_draco_decode bench_planets bench_viewer bench_effects >&2
 bin=build/release/bin
 tiles=25 rounds=5 seconds=4
 $quick && tiles=5 rounds=1 seconds=1
@@ -26,6 +26,10 @@ report=$work/report.md
   echo "**Building a tile**, by level, beside what stock Draco (edgebreaker, speed 7, 16 bits) alone takes for the same mesh:"
   echo
   "$bin/bench_tile_build" --tiles "$tiles"
+  echo
+  echo "**Reading a tile**, 64 cells: its Draco stream by libdraco and by the viewer's reader, which knows kinds of tiles:"
+  echo
+  "$bin/bench_draco_decode" "$($quick && echo 3 || echo 15)"
   echo
   echo "**Who builds the planets**: a first whole view of several bodies (scene \`planets\`), by one thread a body and by tile on one pool:"
   echo

@@ -10,7 +10,7 @@
 
 #include "common/tiling/lattice.h"
 #include "proto/draco_header.h"
-#include "proto/draco_mesh.h"
+#include "proto/draco_listener.h"
 
 namespace terrane {
 namespace {
@@ -57,8 +57,14 @@ class GuardedDecoder : public draco::MeshEdgebreakerDecoder {
  public:
   explicit GuardedDecoder(const DracoAttributeIds& ids) : ids_(ids) {}
   const char* refusal() const noexcept { return refusal_; }
+  /// Of the stream, from where the attributes' values begin; none if it did not come so far.
+  std::optional<std::size_t> valueBytes() const noexcept { return valueBytes_; }
 
  protected:
+  bool DecodeAllAttributes() override {
+    valueBytes_ = static_cast<std::size_t>(buffer()->remaining_size());
+    return draco::MeshEdgebreakerDecoder::DecodeAllAttributes();
+  }
   bool DecodePointAttributes() override {
     refusal_ = checkDescriptors();
     return refusal_ == nullptr && draco::MeshEdgebreakerDecoder::DecodePointAttributes();
@@ -98,6 +104,7 @@ class GuardedDecoder : public draco::MeshEdgebreakerDecoder {
 
   DracoAttributeIds ids_;
   const char* refusal_ = nullptr;
+  std::optional<std::size_t> valueBytes_;
 };
 
 /// The attribute's value for every point, in order. False if it is absent or smaller than the points say.
@@ -151,7 +158,7 @@ Result<TileMesh> copyMesh(const draco::Mesh& mesh, const DracoAttributeIds& ids)
 }
 
 Result<TileMesh> decodeChecked(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
-                               const DracoHeader& header) {
+                               const DracoHeader& header, const DracoListener& listener) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const draco::DecoderOptions options;
@@ -163,13 +170,15 @@ Result<TileMesh> decodeChecked(std::span<const std::uint8_t> bytes, const DracoA
   if (mesh.num_points() != header.vertexCount || mesh.num_faces() != header.triangleCount) {
     return malformed("other counts than its header says");
   }
-  return copyMesh(mesh, ids);
+  auto copied = copyMesh(mesh, ids);
+  if (copied && listener) listener({decoder, mesh, bytes.first(bytes.size() - *decoder.valueBytes())}, *copied);
+  return copied;
 }
 
 }  // namespace
 
-Result<TileMesh> decodeDraco(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
-                             const DecodeLimits& limits) {
+Result<DracoHeader> checkDracoStream(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                                     const DecodeLimits& limits) {
   if (ids.position < 0 || ids.normal < 0 || ids.grid < 0) return malformed("POSITION, NORMAL and _GRID are needed");
   if (bytes.size() > limits.maxBytes) return makeError(ErrorKind::TooLarge, "draco", "more bytes than the limit");
   const auto header = readDracoHeader(bytes);
@@ -182,13 +191,36 @@ Result<TileMesh> decodeDraco(std::span<const std::uint8_t> bytes, const DracoAtt
     return malformed("more bytes than its vertices can need");
   }
   if (header->attributeConnectivities != 0) return unsupported("attributes with seams are not read");
+  return *header;
+}
+
+Result<TileMesh> decodeDraco(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             const DecodeLimits& limits, const DracoListener& listener) {
+  const auto header = checkDracoStream(bytes, ids, limits);
+  if (!header) return header.error();
   try {
-    return decodeChecked(bytes, ids, *header);
+    return decodeChecked(bytes, ids, *header, listener);
   } catch (const std::bad_alloc&) {
     return makeError(ErrorKind::TooLarge, "draco", "asks for more memory than there is");
   } catch (const std::exception& e) {
     return makeError(ErrorKind::Malformed, "draco", e.what());
   }
+}
+
+Result<TileMesh> decodeDraco(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             const DecodeLimits& limits) {
+  return decodeDraco(bytes, ids, limits, {});
+}
+
+void decodeDracoConnectivity(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             const std::function<void(const DracoDecoded&)>& listener) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const draco::DecoderOptions options;
+  GuardedDecoder decoder(ids);
+  draco::Mesh mesh;
+  (void)decoder.Decode(options, &buffer, &mesh);
+  if (decoder.valueBytes()) listener({decoder, mesh, bytes.first(bytes.size() - *decoder.valueBytes())});
 }
 
 }  // namespace terrane

@@ -64,6 +64,7 @@ inline constexpr std::size_t kMaxDracoBytesPerVertex = 20, kMaxDracoBytesBesides
 /// As in the glTF extension; -1 if absent, which only color may be.
 struct DracoAttributeIds {
   int position = -1, normal = -1, color = -1, grid = -1;
+  bool operator==(const DracoAttributeIds&) const = default;
 };
 /// Any bytes: a mesh or an error, bounded memory. Read is what encodeDraco can write: edgebreaker, version 2.2, one
 /// connectivity, these attributes in these types and no others. Errors: Malformed, TooLarge, Unsupported.

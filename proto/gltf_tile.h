@@ -15,6 +15,8 @@
 
 namespace terrane {
 
+class DracoReader;
+
 /// Wraps a mesh (for the accessor's bounds) and its encoding. Errors: InvalidArgument (a number of the metadata that is
 /// not finite, except horizonPoint's, which is written as null; another mesh's encoding).
 Result<std::vector<std::uint8_t>> writeTileGlb(const TileMetadata& metadata, const TileMesh& mesh,
@@ -26,5 +28,8 @@ Result<std::vector<std::uint8_t>> encodeTile(const Tile& tile, const DracoSettin
 /// Any bytes: a tile or one clear error, bounded memory, no file or network access. Errors: Malformed, TooLarge,
 /// Unsupported; field names the part ("header", "json", "bin", "extras.terrane.origin", "draco").
 Result<Tile> decodeTile(std::span<const std::uint8_t> glb, const DecodeLimits& limits = {});
+
+/// The same, by a reader that remembers kinds of tiles: for whoever decodes many.
+Result<Tile> decodeTile(std::span<const std::uint8_t> glb, DracoReader& reader, const DecodeLimits& limits = {});
 
 }  // namespace terrane

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "proto/draco_reader.h"
 #include "proto/glb_container.h"
 #include "proto/gltf_tile.h"
 #include "proto/json_cursor.h"
@@ -156,7 +157,8 @@ Primitive readPrimitive(const JsonCursor& document, const JsonCursor& node, std:
   return result;
 }
 
-Result<Tile> decodeChunks(const GlbChunks& chunks, const DecodeLimits& limits) {
+/// reader may be null.
+Result<Tile> decodeChunks(const GlbChunks& chunks, DracoReader* reader, const DecodeLimits& limits) {
   auto document = JsonDocument::parse(chunks.json, kJsonLimits, "json");
   if (!document) return document.error();
   const JsonCursor json = document->root("json");
@@ -177,7 +179,9 @@ Result<Tile> decodeChunks(const GlbChunks& chunks, const DecodeLimits& limits) {
   const Primitive primitive = readPrimitive(json, node, chunks.bin.size());
   if (document->error()) return *document->error();
 
-  auto mesh = decodeDraco(chunks.bin.subspan(primitive.dracoOffset, primitive.dracoBytes), primitive.ids, limits);
+  const auto draco = chunks.bin.subspan(primitive.dracoOffset, primitive.dracoBytes);
+  auto mesh =
+      reader != nullptr ? reader->decode(draco, primitive.ids, limits) : decodeDraco(draco, primitive.ids, limits);
   if (!mesh) return mesh.error();
   const auto refuse = [](const char* message) { return makeError(ErrorKind::Malformed, "draco", message); };
   if (static_cast<std::int64_t>(mesh->vertexCount()) != primitive.vertexCount)
@@ -192,17 +196,25 @@ Result<Tile> decodeChunks(const GlbChunks& chunks, const DecodeLimits& limits) {
   return tile;
 }
 
-}  // namespace
-
-Result<Tile> decodeTile(std::span<const std::uint8_t> glb, const DecodeLimits& limits) {
+Result<Tile> decodeGlb(std::span<const std::uint8_t> glb, DracoReader* reader, const DecodeLimits& limits) {
   if (glb.size() > limits.maxBytes) return makeError(ErrorKind::TooLarge, "header", "more bytes than the limit");
   const auto chunks = unpackGlb(glb);
   if (!chunks) return chunks.error();
   try {
-    return decodeChunks(*chunks, limits);
+    return decodeChunks(*chunks, reader, limits);
   } catch (const std::exception& e) {
     return makeError(ErrorKind::Malformed, "json", e.what());
   }
+}
+
+}  // namespace
+
+Result<Tile> decodeTile(std::span<const std::uint8_t> glb, const DecodeLimits& limits) {
+  return decodeGlb(glb, nullptr, limits);
+}
+
+Result<Tile> decodeTile(std::span<const std::uint8_t> glb, DracoReader& reader, const DecodeLimits& limits) {
+  return decodeGlb(glb, &reader, limits);
 }
 
 }  // namespace terrane

@@ -105,6 +105,7 @@ std::string statisticsJson(const RunStatistics& s) {
   object.add("cacheHits", s.stream.cacheHits);
   object.add("bytesReceived", s.stream.bytesReceived);
   object.add("decodeMs", milliseconds(s.stream.decodeMs));
+  object.add("quickDecodes", s.stream.quickDecodes);
   if (s.stream.network.simulated()) {
     object.add("latencyMs", static_cast<std::uint64_t>(s.stream.network.latency.count()));
     object.add("bandwidthBytesPerSecond", s.stream.network.bytesPerSecond);

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "proto/draco_reader.h"
 #include "proto/gltf_tile.h"
 
 namespace terrane {
@@ -184,7 +185,7 @@ struct TilePipeline::State {
 
   Result<TilePtr> decodeOne(std::span<const std::uint8_t> encoded, const FacePath& expected) {
     try {
-      auto tile = decodeTile(encoded);
+      auto tile = decodeTile(encoded, draco);
       if (tile && tile->metadata.path != expected) {
         return makeError(ErrorKind::Malformed, "extras.terrane.path", "is " + tile->metadata.path.text());
       }
@@ -240,6 +241,7 @@ struct TilePipeline::State {
   DiskCache* const cache;
   const PipelineOptions options;
   const std::function<void()> wake;
+  DracoReader draco;
 
   mutable std::mutex mutex;  ///< taken before the fetch queue's own
   std::condition_variable changed;
@@ -356,6 +358,7 @@ TilePipeline::Counts TilePipeline::counts() const {
   counts.lost = state_->lost.size();
   counts.cacheHits = state_->cacheHits;
   counts.decodeMs = state_->decodeMs;
+  counts.quickDecodes = state_->draco.counts().quick;
   counts.trouble = state_->trouble;
   return counts;
 }

@@ -70,7 +70,8 @@ class TilePipeline {
     std::size_t lookups = 0, decoding = 0, ready = 0, lost = 0;
     std::uint64_t cacheHits = 0;
     double decodeMs = 0;
-    std::string trouble;  ///< why the last answer was no tile; empty after a tile
+    std::uint64_t quickDecodes = 0;  ///< of tiles whose kind was known, as all but the first ones should be
+    std::string trouble;             ///< why the last answer was no tile; empty after a tile
   };
   Counts counts() const;
 

@@ -340,6 +340,7 @@ StreamStatus TileStream::status() const {
   status.cancelled = state_->cancelledBefore + state_->sum(&BodyTiles::cancelled);
   status.evicted = state_->evictedBefore + state_->sum(&BodyTiles::evicted);
   status.decodeMs = counts.decodeMs;
+  status.quickDecodes = counts.quickDecodes;
   status.network = state_->options.network;
   return status;
 }

@@ -72,8 +72,9 @@ struct StreamStatus {
   std::size_t queued = 0, fetching = 0, decoding = 0, ready = 0, resident = 0, failed = 0;
   std::size_t residentBytes = 0;
   std::uint64_t requests = 0, bytesReceived = 0, cacheHits = 0, cancelled = 0, evicted = 0;
-  double decodeMs = 0;        ///< summed over workers
-  NetworkConditions network;  ///< what is simulated, as asked
+  double decodeMs = 0;             ///< summed over workers
+  std::uint64_t quickDecodes = 0;  ///< tiles whose kind was known: see DracoReader
+  NetworkConditions network;       ///< what is simulated, as asked
 };
 
 /// A decoded tile on its way to the GPU.

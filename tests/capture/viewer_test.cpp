@@ -36,11 +36,11 @@ TEST_F(Viewer, SettlesAtACameraCapturesItAndWritesEveryFigure) {
   EXPECT_EQ(image->width, 320);
   EXPECT_EQ(image->height, 180);
   const std::string json = readFile(folder_ / "a.json");
-  for (const char* key : {"framesDrawn", "frameMs",         "p50",           "p99",        "max",
-                          "msToSettle",  "tilesDrawn",      "tilesResident", "requests",   "bytesReceived",
-                          "decodeMs",    "uncoveredPixels", "skirtPixels",   "rssBytes",   "gpuBytes",
-                          "placement",   "selfTest",        "errorPixels",   "transition", "msaaSamples",
-                          "camera",      "effects",         "constructed",   "renderer",   "points"})
+  for (const char* key :
+       {"framesDrawn",   "frameMs",  "p50",           "p99",      "max",          "msToSettle",      "tilesDrawn",
+        "tilesResident", "requests", "bytesReceived", "decodeMs", "quickDecodes", "uncoveredPixels", "skirtPixels",
+        "rssBytes",      "gpuBytes", "placement",     "selfTest", "errorPixels",  "transition",      "msaaSamples",
+        "camera",        "effects",  "constructed",   "renderer", "points"})
     EXPECT_NE(json.find(std::string(1, '"').append(key).append("\": ")), std::string::npos) << key;
   EXPECT_EQ(jsonNumber(json, "framesDrawn"), 8);
   EXPECT_EQ(jsonNumber(json, "framesCounted"), 8);

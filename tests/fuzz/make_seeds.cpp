@@ -11,6 +11,7 @@
 #include "proto/gltf_tile.h"
 #include "proto/scene_json.h"
 #include "proto/tile_url.h"
+#include "tests/fuzz/draco_heads.h"
 #include "tests/unit/proto/sample_tile.h"
 
 namespace {
@@ -22,6 +23,16 @@ void write(const std::filesystem::path& file, std::span<const std::uint8_t> byte
 }
 void write(const std::filesystem::path& file, const std::string& text) {
   write(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+void writeDracoValues(const std::filesystem::path& corpus) {
+  const auto heads = terrane::fuzz::dracoHeads();
+  for (std::size_t head = 0; head < heads.size(); ++head)
+    for (std::size_t i = 0; i < heads[head].values.size(); ++i) {
+      std::vector<std::uint8_t> seed{static_cast<std::uint8_t>(head)};
+      seed.insert(seed.end(), heads[head].values[i].begin(), heads[head].values[i].end());
+      write(corpus / "fuzz_draco_reader_seeds" / (std::to_string(head) + "_" + std::to_string(i)), seed);
+    }
 }
 
 void writeTile(const std::filesystem::path& corpus, const terrane::test::SampleSettings& sample) {
@@ -94,6 +105,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: make_seeds DIRECTORY\n", stderr);
     return 2;
   }
+  writeDracoValues(argv[1]);
   writeTiles(argv[1]);
   writeValues(argv[1]);
   writeScene(argv[1]);

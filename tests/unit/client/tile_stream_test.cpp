@@ -51,6 +51,7 @@ TEST(TileStream, BringsTheWholeChainWithOneRequestATile) {
   EXPECT_EQ(status.requests, wanted.size() + 1);
   EXPECT_EQ(status.queued + status.fetching + status.decoding + status.ready + status.failed, 0u);
   EXPECT_GT(status.decodeMs, 0);
+  EXPECT_EQ(status.quickDecodes, wanted.size() - 1) << "the first tile teaches the kind";
   EXPECT_GE(status.residentBytes, wanted.size() * SmallViewer::kGpuBytes);
 }
 
