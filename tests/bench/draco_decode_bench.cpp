@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 #include <deque>
 #include <string>
 #include <vector>
@@ -13,30 +12,14 @@
 #include "common/memory/heap_policy.h"
 #include "proto/draco_reader.h"
 #include "proto/gltf_tile.h"
+#include "tests/bench/measure.h"
 #include "tests/unit/proto/sample_tile.h"
 
 namespace {
 
 using namespace terrane;
-
-double nowMs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-template <class Work>
-double milliseconds(Work&& work) {
-  const double begin = nowMs();
-  work();
-  return nowMs() - begin;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+using bench::median;
+using bench::milliseconds;
 
 struct Kind {
   std::string name;

@@ -14,17 +14,13 @@
 #include "common/memory/heap_policy.h"
 #include "server/build/tile_builder.h"
 #include "server/scenes/scene_file.h"
+#include "tests/bench/measure.h"
 #include "tests/bench/stock_draco.h"
 
 namespace {
 
 using namespace terrane;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
+using bench::median;
 
 FacePath randomTile(std::mt19937_64& random, Scheme scheme, int level) {
   FacePath path = FacePath::wholeFace(scheme, static_cast<int>(random() % static_cast<unsigned>(faceCount(scheme))));

@@ -53,8 +53,8 @@ class PopMeter {
     std::vector<FacePath> wanted;  ///< what would be drawn at once
   };
 
-  /// Flies so many frames in the middle of the flight, beginning with a full view and
-  /// what lies beside it. eachFrame: after it was drawn.
+  /// Flies so many frames in the middle of the flight, beginning with a full view and what lies beside it.
+  /// eachFrame: after it was drawn.
   Pops fly(int frames, const std::function<void(const Moment&)>& eachFrame = {});
   /// Returns when the picture is there.
   DrawStats draw(const Moment& moment, Transition transition);

@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "tests/unit/proto/kinds_of_data.h"
 #include "tests/unit/proto/sample_tile.h"
 
 namespace terrane::test {
@@ -45,44 +46,11 @@ std::vector<std::uint32_t> bitsOf(const std::vector<float>& values) {
   return ::testing::AssertionSuccess();
 }
 
-/// Data of all characters on the model's triangles.
-std::vector<std::pair<std::string, TileMesh>> kindsOfData(const TileMesh& model) {
-  std::mt19937 random(kSeed);
-  std::vector<std::pair<std::string, TileMesh>> kinds{{"as sampled", model}};
-  const auto add = [&](std::string name, auto&& offset, auto&& color, auto&& normal) {
-    TileMesh mesh = model;
-    for (std::size_t i = 0; i < mesh.offsets.size(); ++i) mesh.offsets[i] = static_cast<std::uint16_t>(offset(i));
-    for (std::size_t i = 0; i < mesh.colors.size(); ++i) mesh.colors[i] = static_cast<std::uint8_t>(color(i));
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i) mesh.normals[i] = static_cast<float>(normal(i));
-    kinds.emplace_back(std::move(name), std::move(mesh));
-  };
-  const auto drawn = [&](std::size_t) { return random() >> 8; };
-  add(
-      "all equal", [](std::size_t) { return 4711; }, [](std::size_t) { return 96; }, [](std::size_t) { return 1; });
-  add("noise", drawn, drawn, [&](std::size_t) { return std::ldexp(random(), -32) - 0.4999; });
-  add(
-      "only the ends of the range", [&](std::size_t) { return random() % 2 * 65535; },
-      [&](std::size_t) { return random() % 2 * 255; }, [&](std::size_t) { return random() % 2 == 0 ? 1 : -1; });
-  add(
-      "one spike", [](std::size_t i) { return i == 30 ? 65535 : 0; }, [](std::size_t i) { return i == 8 ? 255 : 0; },
-      [](std::size_t i) { return i % 3 == 2 ? -1.0 : 0.0; });
-  add(
-      "small steps", [&](std::size_t i) { return 30000 + i / 3 + random() % 3; },
-      [&](std::size_t) { return 96 + random() % 2; },
-      [&](std::size_t i) { return i % 3 == 1 ? 1.0 : 0.02 * std::ldexp(random(), -32); });
-  add(
-      "normals on the octahedron's edges", [](std::size_t i) { return i; }, [](std::size_t i) { return i / 64; },
-      [&](std::size_t i) { return i % 3 == i / 3 % 3  ? 0.0
-                                  : random() % 2 == 0 ? 1.0
-                                                      : -1.0; });
-  return kinds;
-}
-
 /// All kinds of data on the model's triangles, after one tile was learnt from.
 void expectMeshesOfLibdraco(const TileMesh& model, const DracoSettings& settings, const std::string& kind) {
   DracoReader reader;
   std::uint64_t streams = 0;
-  for (const auto& [name, mesh] : kindsOfData(model)) {
+  for (const auto& [name, mesh] : test::kindsOfData(model, kSeed)) {
     const auto stream = encodeDraco(mesh, settings);
     ASSERT_TRUE(stream.has_value()) << stream.error().text();
     const auto expected = decodeDraco(stream->bytes, idsOf(*stream), {});

@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "tests/unit/proto/kinds_of_data.h"
 #include "tests/unit/proto/sample_tile.h"
 
 namespace terrane::test {
@@ -26,44 +27,11 @@ TileMesh sampleMesh(int cells, bool skirts = true, bool colors = true) {
   return sampleTile({.cellsPerEdge = cells, .skirts = skirts, .colors = colors}).mesh;
 }
 
-/// Kinds of data that make an entropy coder choose differently, and the ends of all ranges.
-std::vector<std::pair<std::string, TileMesh>> kindsOfData(const TileMesh& model) {
-  std::mt19937 random(kSeed);
-  std::vector<std::pair<std::string, TileMesh>> kinds{{"as sampled", model}};
-  const auto add = [&](std::string name, auto&& offset, auto&& color, auto&& normal) {
-    TileMesh mesh = model;
-    for (std::size_t i = 0; i < mesh.offsets.size(); ++i) mesh.offsets[i] = static_cast<std::uint16_t>(offset(i));
-    for (std::size_t i = 0; i < mesh.colors.size(); ++i) mesh.colors[i] = static_cast<std::uint8_t>(color(i));
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i) mesh.normals[i] = static_cast<float>(normal(i));
-    kinds.emplace_back(std::move(name), std::move(mesh));
-  };
-  const auto drawn = [&](std::size_t) { return random() >> 8; };
-  const auto sign = [&](std::size_t) { return random() % 2 == 0 ? 1 : -1; };
-  const auto one = [](std::size_t) { return 1; };
-  add(
-      "all equal", [](std::size_t) { return 4711; }, [](std::size_t) { return 96; }, one);
-  add("noise", drawn, drawn, [&](std::size_t) { return std::ldexp(random(), -32) - 0.4999; });
-  add(
-      "only the ends of the range", [&](std::size_t) { return random() % 2 * 65535; },
-      [&](std::size_t) { return random() % 2 * 255; }, sign);
-  add(
-      "one spike", [](std::size_t i) { return i == 30 ? 65535 : 0; }, [](std::size_t i) { return i == 8 ? 255 : 0; },
-      [](std::size_t i) { return i % 3 == 2 ? -1.0 : 0.0; });
-  add(
-      "a ramp", [](std::size_t i) { return i; }, [](std::size_t i) { return i / 64; },
-      [](std::size_t i) { return i % 3 == 0 ? 1.0 : std::sin(0.01 * static_cast<double>(i)); });
-  add(
-      "small steps", [&](std::size_t i) { return 30000 + i / 3 + random() % 3; },
-      [&](std::size_t) { return 96 + random() % 2; },
-      [&](std::size_t i) { return i % 3 == 1 ? 1.0 : 0.02 * std::ldexp(random(), -32); });
-  return kinds;
-}
-
 /// Of the model's kind of tile.
 void expectBytesOfLibdraco(const TileMesh& model, const std::string& kind) {
   const auto learnt = DracoTemplate::learn(model, {});
   ASSERT_TRUE(learnt.has_value()) << kind << ": " << learnt.error().text();
-  for (const auto& [name, mesh] : kindsOfData(model)) {
+  for (const auto& [name, mesh] : test::kindsOfData(model, kSeed)) {
     const auto expected = encodeDraco(mesh, {}), actual = (*learnt)->encode(mesh);
     ASSERT_TRUE(expected.has_value() && actual.has_value()) << name;
     EXPECT_TRUE(actual->bytes == expected->bytes) << name << ", " << kind << ", seed " << kSeed;
@@ -93,7 +61,7 @@ TEST(DracoTemplate, GivesTheBytesOfLibdracoInEverySettingItTakes) {
       const auto learnt = DracoTemplate::learn(model, settings);
       EXPECT_EQ(learnt.has_value(), speed >= 2) << "speed " << speed << ", " << bits << " bits";
       if (!learnt) continue;
-      for (const auto& [name, mesh] : kindsOfData(model))
+      for (const auto& [name, mesh] : test::kindsOfData(model, kSeed))
         EXPECT_TRUE((*learnt)->encode(mesh)->bytes == encodeDraco(mesh, settings)->bytes)
             << name << ", speed " << speed << ", " << bits << " bits, seed " << kSeed;
     }
@@ -117,7 +85,7 @@ TEST(DracoTemplate, LibdracoReadsPredictionsOfTheirOwnExactly) {
       for (const DracoSettings& settings : settingsOfTheirOwn()) {
         const auto learnt = DracoTemplate::learn(model, settings);
         ASSERT_TRUE(learnt.has_value()) << learnt.error().text();
-        for (const auto& [name, mesh] : kindsOfData(model)) {
+        for (const auto& [name, mesh] : test::kindsOfData(model, kSeed)) {
           const DracoBuffer stock = encodeDraco(mesh, settings).value(), ours = (*learnt)->encode(mesh).value();
           const DracoAttributeIds ids{stock.positionId, stock.normalId, stock.colorId, stock.gridId};
           const TileMesh expected = decodeDraco(stock.bytes, ids, {}).value();
@@ -173,7 +141,7 @@ TEST(DracoTemplate, GivesTheBytesOfLibdracoWithAsManyTrianglesAroundAVertexAsItT
     const DracoSettings settings{.speed = speed, .normalBits = 16};
     const auto learnt = DracoTemplate::learn(model, settings);
     ASSERT_TRUE(learnt.has_value()) << learnt.error().text();
-    for (const auto& [name, mesh] : kindsOfData(model))
+    for (const auto& [name, mesh] : test::kindsOfData(model, kSeed))
       EXPECT_TRUE((*learnt)->encode(mesh)->bytes == encodeDraco(mesh, settings)->bytes) << name << ", speed " << speed;
   }
 }
