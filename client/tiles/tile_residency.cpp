@@ -117,9 +117,10 @@ std::optional<glm::dvec3> unitDirection(const glm::dvec3& direction) {
 /// What is drawn under a tile of the finest level; where nothing is, the tile there that is of the level of the nearest
 /// drawn one, morphed as that is. Precondition: something is drawn.
 DrawnTile drawnAround(const FacePath& finest, const std::vector<DrawnTile>& drawn) {
+  for (const DrawnTile& tile : drawn)
+    if (finest.ancestor(tile.path.level()) == tile.path) return tile;
   std::unordered_map<FacePath, const DrawnTile*> coarsestIn;  // a drawn tile, or an ancestor of some
   for (const DrawnTile& tile : drawn) {
-    if (finest.ancestor(tile.path.level()) == tile.path) return tile;
     for (int level = tile.path.level(); level >= 0; --level) {
       const DrawnTile*& coarsest = coarsestIn.try_emplace(tile.path.ancestor(level), &tile).first->second;
       if (tile.path.level() < coarsest->path.level()) coarsest = &tile;
