@@ -19,7 +19,7 @@ class SeveralBodies : public ::testing::Test {
  protected:
   void open(StreamOptions options) {
     options.serverUrl = world_.url();
-    stream_ = std::move(*TileStream::open(std::move(options), [] {}));
+    stream_ = *TileStream::open(std::move(options), [] {});
     while (stream_->scene() == nullptr) std::this_thread::yield();
     stream_->selectBodies(std::array<std::size_t, kBodies>{0, 1});
   }
