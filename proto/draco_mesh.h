@@ -28,9 +28,10 @@ enum class DracoNormals : std::uint8_t {
 };
 
 struct DracoSettings {
-  /// 0 (smallest) .. 10 (fastest). By libdraco 4 takes 10 % fewer bytes than 7 and 8 % more time, and above 7 tiles
-  /// grow by a third for 3 % less time; by a DracoTemplate 4 to 10 take the same time.
-  int speed = 7;
+  /// 0 (smallest) .. 10 (fastest). By a DracoTemplate 4 to 10 take the same time; by libdraco 4 takes 8 % more than 7,
+  /// for 11 % fewer bytes, which decode in the same time (bench_draco, bench_draco_decode). Above 7 tiles grow by a
+  /// third.
+  int speed = 4;
   int normalBits = 8;  ///< octahedral, 2..16
   /// Only a DracoTemplate can choose these, and any decoder of Draco reads them; encodeDraco predicts as libdraco does
   /// at the speed, whatever they say.

@@ -118,6 +118,7 @@ Result<Route> parseTarget(std::string_view target) {
   if (*path == "/") return Route(RootPage{});
   if (*path == "/healthz") return Route(HealthCheck{});
   if (*path == "/readyz") return Route(ReadyCheck{});
+  if (*path == "/metrics") return Route(Metrics{});
   if (*path == kSceneTarget) return Route(SceneDocument{});
 
   if (hasDotSegment(*path)) return invalid("target", "dot segments");

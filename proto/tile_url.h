@@ -20,13 +20,14 @@ inline constexpr std::size_t kMaxTargetBytes = 2048;
 struct RootPage {};
 struct HealthCheck {};
 struct ReadyCheck {};
+struct Metrics {};
 struct SceneDocument {};
 struct TileAddress {
   std::string revision;
   std::string body;
   FacePath path;
 };
-using Route = std::variant<RootPage, HealthCheck, ReadyCheck, SceneDocument, TileAddress>;
+using Route = std::variant<RootPage, HealthCheck, ReadyCheck, Metrics, SceneDocument, TileAddress>;
 
 /// Any bytes. Errors: NotFound for a path that is no route; TooLarge ("target") beyond kMaxTargetBytes; InvalidArgument
 /// naming "face", "digits", "scheme", "body", "revision", or "target" (dot segments, a character or an escape that no

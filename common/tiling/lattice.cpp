@@ -1,6 +1,8 @@
 #include "common/tiling/lattice.h"
 
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "common/numerics/strict_math.h"
 #include "common/tiling/icosahedron.h"
@@ -33,7 +35,14 @@ int stepExponent(double radiusMeters, int level, Scheme scheme) noexcept {
   return (fraction > 0.5 ? exponent : exponent - 1) - 15;
 }
 
-double stepMeters(int stepExponent) noexcept { return std::ldexp(1.0, stepExponent); }
+double stepMeters(int stepExponent) noexcept {
+  // A normal number's bits, since ldexp is a call that rounding to the lattice would make for each vertex.
+  constexpr int kLeast = std::numeric_limits<double>::min_exponent - 1,
+                kMost = std::numeric_limits<double>::max_exponent - 1;
+  if (stepExponent < kLeast || stepExponent > kMost) return std::ldexp(1.0, stepExponent);
+  constexpr int kBias = kMost, kFractionBits = std::numeric_limits<double>::digits - 1;
+  return std::bit_cast<double>(static_cast<std::uint64_t>(stepExponent + kBias) << kFractionBits);
+}
 
 int maxLevel(double radiusMeters, Scheme scheme) noexcept {
   int level = FacePath::kMaxLevel;

@@ -32,6 +32,12 @@ if(TERRANE_SANITIZERS)
     target_compile_options(terrane_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
   endif()
 endif()
+# Linked last by what is tried by no one: undefined behaviour is looked for in what it calls, not in it.
+add_library(terrane_defined INTERFACE)
+add_library(terrane::defined ALIAS terrane_defined)
+if(TERRANE_SANITIZERS MATCHES "undefined")
+  target_compile_options(terrane_defined INTERFACE -fno-sanitize=undefined)
+endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

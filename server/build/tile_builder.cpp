@@ -32,11 +32,29 @@ struct BuildScratch {
   SkirtScratch skirt;
   std::vector<double> skirtHeights;
   std::vector<LatticePoint> lattice;  ///< of all vertices, skirts included
+  Tile tile;
+  DracoBuffer draco;
 };
 
 /// Hands each build its own scratch. As many exist as builds ever ran at once.
 class ScratchPool {
  public:
+  /// Gives back what it took.
+  class Loan {
+   public:
+    explicit Loan(ScratchPool& pool) : pool_(pool), scratch_(pool.take()) {}
+    ~Loan() { pool_.giveBack(std::move(scratch_)); }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+    BuildScratch& operator*() const noexcept { return *scratch_; }
+    BuildScratch* operator->() const noexcept { return scratch_.get(); }
+
+   private:
+    ScratchPool& pool_;
+    std::unique_ptr<BuildScratch> scratch_;
+  };
+
+ private:
   std::unique_ptr<BuildScratch> take() {
     const std::lock_guard lock(mutex_);
     if (free_.empty()) return std::make_unique<BuildScratch>();
@@ -49,7 +67,6 @@ class ScratchPool {
     free_.push_back(std::move(scratch));
   }
 
- private:
   std::mutex mutex_;
   std::vector<std::unique_ptr<BuildScratch>> free_;
 };
@@ -148,7 +165,10 @@ struct TileBuilder::State {
   std::string whyStockDraco;
   mutable ScratchPool scratch;
 
-  Result<Tile> buildMesh(const FacePath& path, BuildScratch& scratchMemory, BuildTimes& times) const;
+  /// Into memory.tile.
+  Result<void> buildMesh(const FacePath& path, BuildScratch& memory, BuildTimes& times) const;
+  /// Of memory.tile.
+  Result<void> encode(BuildScratch& memory) const;
   void learnDraco(const Result<Tile>& model, DracoCoder coder);
   Result<void> checkPath(const FacePath& path) const;
   void describe(const FacePath& path, const BuildScratch& memory, TileMetadata& metadata) const;
@@ -245,7 +265,7 @@ void TileBuilder::State::describe(const FacePath& path, const BuildScratch& memo
   metadata.skirtMeters = static_cast<float>(deepest);
 }
 
-Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& memory, BuildTimes& times) const {
+Result<void> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& memory, BuildTimes& times) const {
   if (const Result<void> checked = checkPath(path); checked.has_error()) return checked.error();
   const auto start = Clock::now();
   const double radius = body.radiusMeters;
@@ -268,7 +288,8 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   times.fieldMs += millisecondsSince(start);
 
   const auto meshStart = Clock::now();
-  Tile tile;
+  Tile& tile = memory.tile;
+  tile.metadata = {};
   tile.metadata.stepExponent = stepExponent(radius, path.level(), scheme);
   placeVertices(path, memory, *topology, radius, tile.metadata.stepExponent, memory.lattice);
   if (!offsetsFromOrigin(memory.lattice, tile.metadata.origin, tile.mesh.offsets))
@@ -287,28 +308,34 @@ Result<Tile> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   tile.mesh.triangles = topology->triangles;
   describe(path, memory, tile.metadata);
   times.meshMs += millisecondsSince(meshStart);
-  return tile;
+  return {};
+}
+
+Result<void> TileBuilder::State::encode(BuildScratch& memory) const {
+  if (draco) return draco->encodeInto(memory.tile.mesh, memory.draco);
+  Result<DracoBuffer> stock = encodeDraco(memory.tile.mesh, wire.draco);
+  if (stock.has_error()) return stock.error();
+  memory.draco = *std::move(stock);
+  return {};
 }
 
 Result<Tile> TileBuilder::buildMesh(const FacePath& path, BuildTimes* times) const {
   BuildTimes ignored;
-  std::unique_ptr<BuildScratch> memory = state_->scratch.take();
-  Result<Tile> tile = state_->buildMesh(path, *memory, times != nullptr ? *times : ignored);
-  state_->scratch.giveBack(std::move(memory));
-  return tile;
+  const ScratchPool::Loan memory(state_->scratch);
+  const Result<void> built = state_->buildMesh(path, *memory, times != nullptr ? *times : ignored);
+  if (built.has_error()) return built.error();
+  return memory->tile;
 }
 
 Result<BuiltTile> TileBuilder::build(const FacePath& path) const {
   BuiltTile built;
-  const Result<Tile> tile = buildMesh(path, &built.times);
-  if (tile.has_error()) return tile.error();
+  const ScratchPool::Loan memory(state_->scratch);
+  if (const Result<void> mesh = state_->buildMesh(path, *memory, built.times); mesh.has_error()) return mesh.error();
   const auto dracoStart = Clock::now();
-  const Result<DracoBuffer> draco =
-      state_->draco ? state_->draco->encode(tile->mesh) : encodeDraco(tile->mesh, state_->wire.draco);
-  if (draco.has_error()) return draco.error();
+  if (const Result<void> encoded = state_->encode(*memory); encoded.has_error()) return encoded.error();
   built.times.dracoMs = millisecondsSince(dracoStart);
   const auto glbStart = Clock::now();
-  Result<std::vector<std::uint8_t>> glb = writeTileGlb(tile->metadata, tile->mesh, *draco);
+  Result<std::vector<std::uint8_t>> glb = writeTileGlb(memory->tile.metadata, memory->tile.mesh, memory->draco);
   if (glb.has_error()) return glb.error();
   built.glb = std::move(*glb);
   built.times.glbMs = millisecondsSince(glbStart);

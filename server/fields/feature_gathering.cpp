@@ -49,9 +49,10 @@ void FeatureGathering::start(const std::shared_ptr<const FeatureTables>& tables,
 }
 
 GatheredFeatures FeatureGathering::near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
-                                        double minWavelength, bool inDouble) {
+                                        const FeatureWants& wants) {
   if (!covers(*tables, points)) start(tables, points.ball);
-  return {runs(minWavelength, inDouble), halos(minWavelength)};
+  return {runs(wants.minWavelengthMeters, wants.inDouble),
+          wants.halos ? halos(wants.minWavelengthMeters) : std::span<const Halo>()};
 }
 
 std::span<const FeatureRun> FeatureGathering::runs(double minWavelength, bool inDouble) {

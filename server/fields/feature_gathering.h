@@ -32,6 +32,13 @@ struct FeatureTables {
   std::vector<Halo> landmarkHalos;
 };
 
+/// What a batch asks for.
+struct FeatureWants {
+  double minWavelengthMeters;
+  bool inDouble;  ///< large features are computed in double
+  bool halos;
+};
+
 struct GatheredFeatures {
   std::span<const FeatureRun> runs;
   std::span<const Halo> halos;
@@ -39,11 +46,11 @@ struct GatheredFeatures {
 
 class FeatureGathering {
  public:
-  /// Features that may reach any of the points, of all layers with wavelengths of at least minWavelength, coarse to
-  /// fine, within a layer by face, row and column, landmarks last (of halos first): the order of the sums. Valid until
-  /// the next call. inDouble: large features are computed in double.
+  /// Features that may reach any of the points, of all layers with wavelengths of at least wants.minWavelengthMeters,
+  /// coarse to fine, within a layer by face, row and column, landmarks last (of halos first): the order of the sums.
+  /// Valid until the next call.
   GatheredFeatures near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
-                        double minWavelength, bool inDouble);
+                        const FeatureWants& wants);
 
  private:
   bool covers(const FeatureTables& tables, const PointSet& points) const noexcept;

@@ -103,7 +103,7 @@ TERRANE_INLINE Profile<Real> rockProfile(const Shape<Real>& p, Real s) {
 }
 
 /// The stage is a compile-time choice so that the compiler sees which arrays of the block are written, and vectorises.
-template <class Real, FeatureStage Stage>
+template <class Real, FeatureStage Stage, Wanted kWanted>
 TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape, Block& b, std::size_t begin) {
   constexpr bool kRock = Stage == FeatureStage::Rock, kOld = Stage == FeatureStage::OldCrater;
   const double cx = f.center[0], cy = f.center[1], cz = f.center[2];
@@ -137,9 +137,10 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
     const Real stretched = square * outline * outline;
     const Profile<Real> h = kRock ? rockProfile<Real>(shape, stretched) : craterProfile<Real>(shape, stretched);
 
+    (kOld ? b.relief : b.young)[i] += static_cast<double>(h.value);
+    if constexpr (kWanted == Wanted::Heights) continue;
     const Real radial = h.slope * Real(2) * outline * outline * inverseSquared;
     const Real angular = h.slope * Real(2) * square * outline * turn * inverseRange * inverse;
-    (kOld ? b.relief : b.young)[i] += static_cast<double>(h.value);
     (kOld ? b.reliefX : b.youngX)[i] += static_cast<float>(radial * dx + angular * (c * bx - s * ax));
     (kOld ? b.reliefY : b.youngY)[i] += static_cast<float>(radial * dy + angular * (c * by - s * ay));
     (kOld ? b.reliefZ : b.youngZ)[i] += static_cast<float>(radial * dz + angular * (c * bz - s * az));
@@ -160,28 +161,30 @@ TERRANE_INLINE bool chunkReaches(const Block& b, std::size_t chunk, const double
   return dx * dx + dy * dy + dz * dz <= limit * limit;
 }
 
-template <class Real, FeatureStage Stage>
+template <class Real, FeatureStage Stage, Wanted kWanted>
 void addFeatures(const FeatureRun& run, const Program& program, Block& b) {
   for (std::size_t k = 0; k < run.count; ++k) {
     const Feature& f = run.features[k];
     if (f.radius < program.minWavelength || !reaches(b, f.center, f.reach)) continue;
     const Shape<Real> shape = shapeOf<Real>(f, program);
     for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
-      if (chunkReaches(b, chunk, f.center, f.reach)) addFeatureToChunk<Real, Stage>(f, shape, b, chunk * kChunk);
+      if (chunkReaches(b, chunk, f.center, f.reach))
+        addFeatureToChunk<Real, Stage, kWanted>(f, shape, b, chunk * kChunk);
     }
   }
 }
 
+template <Wanted kWanted>
 void addRun(const FeatureRun& run, const Program& program, Block& b) {
   switch (run.stage) {
     case FeatureStage::OldCrater:
-      return run.inDouble ? addFeatures<double, FeatureStage::OldCrater>(run, program, b)
-                          : addFeatures<float, FeatureStage::OldCrater>(run, program, b);
+      return run.inDouble ? addFeatures<double, FeatureStage::OldCrater, kWanted>(run, program, b)
+                          : addFeatures<float, FeatureStage::OldCrater, kWanted>(run, program, b);
     case FeatureStage::YoungCrater:
-      return run.inDouble ? addFeatures<double, FeatureStage::YoungCrater>(run, program, b)
-                          : addFeatures<float, FeatureStage::YoungCrater>(run, program, b);
+      return run.inDouble ? addFeatures<double, FeatureStage::YoungCrater, kWanted>(run, program, b)
+                          : addFeatures<float, FeatureStage::YoungCrater, kWanted>(run, program, b);
     case FeatureStage::Rock:
-      return addFeatures<float, FeatureStage::Rock>(run, program, b);
+      return addFeatures<float, FeatureStage::Rock, kWanted>(run, program, b);
   }
 }
 

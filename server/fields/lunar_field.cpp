@@ -241,6 +241,7 @@ class LunarField::Evaluation {
         out_(out),
         scratch_(*out.scratch),
         program_(field.base_) {
+    program_.heightsOnly = batch.grid && batch.grid->skirtEdge != GridPlace::kWholeGrid;
     program_.footprint = batch.footprintMeters;
     program_.minWavelength = minWavelengthMeters;
     scratch_.groups.clear();
@@ -306,8 +307,8 @@ class LunarField::Evaluation {
   }
 
   void gather(const PointSet& points) {
-    const GatheredFeatures gathered =
-        scratch_.gathering.near(field_.features_, points, minWavelength_, program_.reliefInDouble);
+    const GatheredFeatures gathered = scratch_.gathering.near(
+        field_.features_, points, {minWavelength_, program_.reliefInDouble, !program_.heightsOnly});
     program_.runs = gathered.runs.data();
     program_.runCount = gathered.runs.size();
     program_.halos = gathered.halos.data();
@@ -343,6 +344,7 @@ class LunarField::Evaluation {
     for (std::size_t i = 0; i < indices.size(); ++i) {
       const std::size_t to = indices[i];
       out_.heightMeters[to] = block.height[i];
+      if (program_.heightsOnly) continue;
       out_.gradientX[to] = block.gradientX[i];
       out_.gradientY[to] = block.gradientY[i];
       out_.gradientZ[to] = block.gradientZ[i];

@@ -42,6 +42,7 @@ TERRANE_INLINE float landShare(float height, float slopeX, float slopeY, float s
 
 /// Floods the relief, adds what is young, clamps (C2, so that no sum of overlapping features leaves the stated range),
 /// roughens.
+template <Wanted kWanted>
 void composeHeight(const Program& p, Block& b) {
   const float smoothing = static_cast<float>(p.mareSmoothing);
   const float lavaRise = static_cast<float>(p.lavaTop - p.lavaFloor);
@@ -53,16 +54,17 @@ void composeHeight(const Program& p, Block& b) {
     const Blend surface = roundedMax(b.relief[i], lava, p.lavaBlend);
     const Blend bottom = roundedMax(surface.value + b.young[i], p.clampLow, p.clampBlend);
     const Blend top = roundedMax(-bottom.value, -p.clampHigh, p.clampBlend);
+    const float dry = static_cast<float>(b.dry[i]);
+    const float calm = 1.0f - smoothing * (1.0f - dry), roughCalm = smoothing * b.rough[i];
+    b.height[i] = static_cast<double>(calm * b.rough[i]) - top.value;
+    if constexpr (kWanted == Wanted::Heights) continue;
+
     const float keep = static_cast<float>(bottom.weight * top.weight);
     const float lavaX = b.lavaX[i] - lavaRise * b.dryX[i], lavaY = b.lavaY[i] - lavaRise * b.dryY[i],
                 lavaZ = b.lavaZ[i] - lavaRise * b.dryZ[i];
     const float land = landShare(static_cast<float>(b.relief[i] - lava), b.reliefX[i] - lavaX, b.reliefY[i] - lavaY,
                                  b.reliefZ[i] - lavaZ, lavaBlend, footprint);
     const float mare = keep * (1.0f - land), landKeep = land * keep;
-
-    const float dry = static_cast<float>(b.dry[i]);
-    const float calm = 1.0f - smoothing * (1.0f - dry), roughCalm = smoothing * b.rough[i];
-    b.height[i] = static_cast<double>(calm * b.rough[i]) - top.value;
 
     float gx = landKeep * b.reliefX[i] + mare * lavaX + keep * b.youngX[i];
     float gy = landKeep * b.reliefY[i] + mare * lavaY + keep * b.youngY[i];
@@ -92,30 +94,42 @@ void composeHeight(const Program& p, Block& b) {
   }
 }
 
-}  // namespace
-
-void kEvaluate(const Program& program, Block& block) noexcept {
+template <Wanted kWanted>
+void evaluateAll(const Program& program, Block& block) {
   clearBlock(block);
   OctaveSamples<float> modulator;
   for (std::size_t i = 0; i < block.count; ++i)
     modulator.value[i] = modulator.x[i] = modulator.y[i] = modulator.z[i] = 0.0f;
   if (program.reliefInDouble) {
-    addRelief<double>(program.relief, program.footprint, block, modulator);
+    addRelief<double, kWanted>(program.relief, program.footprint, block, modulator);
   } else {
-    addRelief<float>(program.relief, program.footprint, block, modulator);
+    addRelief<float, kWanted>(program.relief, program.footprint, block, modulator);
   }
   for (std::size_t k = 0; k < program.basinCount; ++k) {
-    if (reaches(block, program.basins[k].center, program.basins[k].reach)) addBasin(program.basins[k], block);
+    if (reaches(block, program.basins[k].center, program.basins[k].reach)) addBasin<kWanted>(program.basins[k], block);
   }
   for (std::size_t k = 0; k < program.patchCount; ++k) {
-    if (reaches(block, program.patches[k].center, program.patches[k].reach)) addPatch(program.patches[k], block);
+    if (reaches(block, program.patches[k].center, program.patches[k].reach))
+      addPatch<kWanted>(program.patches[k], block);
   }
   for (std::size_t k = 0; k < program.regolithCount; ++k)
-    addRegolith(program.regolith[k], program.footprint, block, modulator);
-  for (std::size_t k = 0; k < program.runCount; ++k) addRun(program.runs[k], program, block);
-  addHalos(program, block);
-  for (std::size_t k = 0; k < program.rayCount; ++k) {
-    if (reaches(block, program.rays[k].center, program.rays[k].reach)) addRays(program.rays[k], block);
+    addRegolith<kWanted>(program.regolith[k], program.footprint, block, modulator);
+  for (std::size_t k = 0; k < program.runCount; ++k) addRun<kWanted>(program.runs[k], program, block);
+  if constexpr (kWanted == Wanted::All) {
+    addHalos(program, block);
+    for (std::size_t k = 0; k < program.rayCount; ++k) {
+      if (reaches(block, program.rays[k].center, program.rays[k].reach)) addRays(program.rays[k], block);
+    }
   }
-  composeHeight(program, block);
+  composeHeight<kWanted>(program, block);
+}
+
+}  // namespace
+
+void kEvaluate(const Program& program, Block& block) noexcept {
+  if (program.heightsOnly) {
+    evaluateAll<Wanted::Heights>(program, block);
+  } else {
+    evaluateAll<Wanted::All>(program, block);
+  }
 }

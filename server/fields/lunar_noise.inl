@@ -102,7 +102,12 @@ TERRANE_INLINE Noise<Real> noiseInCell(const Cell& cell, Real fx, Real fy, Real 
   return n;
 }
 
-/// One octave over a block; value and gradient (per metre of the rotated frame, times amplitude 1) into the arrays.
+/// What is asked of a kernel. Of a tile's borders only heights are, and slopes and colours take most of the time.
+/// Heights have the same bits either way.
+enum class Wanted { All, Heights };
+
+/// One octave over a block; value and, if wanted, gradient (per metre of the rotated frame, times amplitude 1) into the
+/// arrays.
 template <class Real>
 struct OctaveSamples {
   alignas(64) Real value[kBlockCapacity];
@@ -121,6 +126,13 @@ TERRANE_INLINE std::uint32_t cellIndex(double t) {
 }
 
 template <class Real>
+TERRANE_INLINE void storeGradient(const Noise<Real>& n, std::size_t i, OctaveSamples<Real>& out) {
+  out.x[i] = static_cast<float>(n.x);
+  out.y[i] = static_cast<float>(n.y);
+  out.z[i] = static_cast<float>(n.z);
+}
+
+template <class Real, Wanted kWanted>
 void octaveInOneCell(const RotatedBlock& block, const NoiseOctave& octave, const double* first,
                      OctaveSamples<Real>& out) {
   const double inverse = octave.inverseWavelength;
@@ -133,9 +145,7 @@ void octaveInOneCell(const RotatedBlock& block, const NoiseOctave& octave, const
     const Real fz = static_cast<Real>(((block.z[i] * inverse + oz) - rz) + 0.5);
     const Noise<Real> n = noiseInCell<Real>(cell, fx, fy, fz);
     out.value[i] = n.value;
-    out.x[i] = static_cast<float>(n.x);
-    out.y[i] = static_cast<float>(n.y);
-    out.z[i] = static_cast<float>(n.z);
+    if constexpr (kWanted == Wanted::All) storeGradient(n, i, out);
   }
 }
 
@@ -149,7 +159,7 @@ TERRANE_INLINE void splitCells(const double* p, std::size_t count, double invers
   }
 }
 
-template <class Real>
+template <class Real, Wanted kWanted>
 void octaveInManyCells(const RotatedBlock& block, const NoiseOctave& octave, OctaveSamples<Real>& out) {
   alignas(64) Real fx[kBlockCapacity], fy[kBlockCapacity], fz[kBlockCapacity];
   alignas(64) std::uint32_t ix[kBlockCapacity], iy[kBlockCapacity], iz[kBlockCapacity];
@@ -161,14 +171,12 @@ void octaveInManyCells(const RotatedBlock& block, const NoiseOctave& octave, Oct
   for (std::size_t i = 0; i < block.count; ++i) {
     const Noise<Real> n = noiseInCell<Real>(cellDirections(ix[i], iy[i], iz[i], seed), fx[i], fy[i], fz[i]);
     out.value[i] = n.value;
-    out.x[i] = static_cast<float>(n.x);
-    out.y[i] = static_cast<float>(n.y);
-    out.z[i] = static_cast<float>(n.z);
+    if constexpr (kWanted == Wanted::All) storeGradient(n, i, out);
   }
 }
 
 /// Rounding is monotone, so if the corners of the block's box share a cell, all its samples do.
-template <class Real>
+template <class Real, Wanted kWanted>
 void evaluateOctave(const RotatedBlock& block, const NoiseOctave& octave, OctaveSamples<Real>& out) {
   double low[3];
   bool oneCell = true;
@@ -178,9 +186,9 @@ void evaluateOctave(const RotatedBlock& block, const NoiseOctave& octave, Octave
     oneCell = oneCell && roundToCell(low[axis]) == roundToCell(high);
   }
   if (oneCell) {
-    octaveInOneCell<Real>(block, octave, low, out);
+    octaveInOneCell<Real, kWanted>(block, octave, low, out);
   } else {
-    octaveInManyCells<Real>(block, octave, out);
+    octaveInManyCells<Real, kWanted>(block, octave, out);
   }
 }
 

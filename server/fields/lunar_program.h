@@ -124,6 +124,7 @@ struct FeatureRun {
 };
 
 struct Program {
+  bool heightsOnly;  ///< a block's gradients and reflectance are left as they are
   double radius;
   double minWavelength;  ///< metres: features and halos of smaller radii are left out, of somewhat larger ones shown in
                          ///< part

@@ -42,7 +42,7 @@ constexpr std::string_view kTail = R"(</table>
 <table>
 <tr><td><a href="/v1/scene.json">/v1/scene.json</a></td><td>bodies, revisions, limits, effects</td></tr>
 <tr><td><code>/v1/{{revision}}/{{body}}/{{scheme}}/{{face}}[/{{digits}}].glb</code></td><td>a tile; digits 0 to 3, one for each level</td></tr>
-<tr><td><a href="/healthz">/healthz</a>, <a href="/readyz">/readyz</a></td><td>for whoever watches the server</td></tr>
+<tr><td><a href="/healthz">/healthz</a>, <a href="/readyz">/readyz</a>, <a href="/metrics">/metrics</a></td><td>for whoever watches the server</td></tr>
 </table>
 </body>
 </html>

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "proto/tile_url.h"
+#include "server/http/metrics.h"
 #include "server/http/problem.h"
 #include "server/http/root_page.h"
 
@@ -206,6 +207,11 @@ ServiceResponse TileService::State::answer(const Route& route, const ServiceRequ
   if (std::holds_alternative<RootPage>(route)) return page.response(request.ifNoneMatch);
   if (std::holds_alternative<SceneDocument>(route)) return sceneJson.response(request.ifNoneMatch);
   if (std::holds_alternative<HealthCheck>(route)) return plainText("ok\n");
+  if (std::holds_alternative<Metrics>(route)) {
+    ServiceResponse response = plainText(metricsText(cache.stats(), scene.bodies, whyStockDraco));
+    response.contentType = kMetricsType;
+    return response;
+  }
   if (ready) return plainText("ready\n");
   return problemResponse(makeError(ErrorKind::Overloaded, "", "the server is not ready"), 503, request.target);
 }

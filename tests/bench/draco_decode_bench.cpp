@@ -68,10 +68,10 @@ int main(int argc, char** argv) {
   keepFreedMemory(kHeapKeptByViewer);
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 15;
   std::deque<Kind> kinds;
-  for (const int speed : {1, 3, 5, 7, 10}) kinds.emplace_back(Scheme::Cube, true, true, DracoSettings{speed, 8});
-  kinds.emplace_back(Scheme::Cube, true, false, DracoSettings{7, 8});
-  kinds.emplace_back(Scheme::Cube, true, true, DracoSettings{7, 10});
-  kinds.emplace_back(Scheme::Ico, true, true, DracoSettings{7, 8});
+  for (const int speed : {1, 3, 4, 5, 7, 10}) kinds.emplace_back(Scheme::Cube, true, true, DracoSettings{speed, 8});
+  kinds.emplace_back(Scheme::Cube, true, false, DracoSettings{});
+  kinds.emplace_back(Scheme::Cube, true, true, DracoSettings{.normalBits = 10});
+  kinds.emplace_back(Scheme::Ico, true, true, DracoSettings{});
   for (int round = 0; round < rounds; ++round)
     for (Kind& kind : kinds) kind.measure();
 

@@ -4,8 +4,9 @@
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 
-#include <chrono>
 #include <memory>
+
+#include "tests/bench/measure.h"
 
 namespace terrane::bench {
 namespace {
@@ -28,7 +29,7 @@ int addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::
 }  // namespace
 
 StockEncode encodeWithStockDraco(const TileMesh& mesh, const DracoSettings& settings, bool deduplicate) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = threadMs();
   draco::Mesh output;
   output.set_num_points(static_cast<std::uint32_t>(mesh.vertexCount()));
   output.SetNumFaces(mesh.triangles.size() / 3);
@@ -55,8 +56,7 @@ StockEncode encodeWithStockDraco(const TileMesh& mesh, const DracoSettings& sett
   encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, settings.normalBits);
   draco::EncoderBuffer buffer;
   if (!encoder.EncodeMeshToBuffer(output, &buffer).ok()) return {};
-  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  return {took.count(), buffer.size()};
+  return {threadMs() - start, buffer.size()};
 }
 
 }  // namespace terrane::bench

@@ -91,7 +91,7 @@ void writeScene(const std::filesystem::path& corpus) {
 void writeTargets(const std::filesystem::path& corpus) {
   int number = 0;
   for (const std::string target :
-       {"/", "/healthz", "/readyz", "/v1/scene.json", "/v1/0123456789abcdef/moon/cube/2.glb",
+       {"/", "/healthz", "/readyz", "/metrics", "/v1/scene.json", "/v1/0123456789abcdef/moon/cube/2.glb",
         "/v1/0123456789abcdef/moon/ico/19/0312.glb", "//v1//0123456789abcdef/moon/cube/5/0.glb?x=%20",
         "http://host/v1/%30123456/a/cube/0/3.glb"}) {
     write(corpus / "fuzz_parse_target_seeds" / std::to_string(number++), target);

@@ -67,6 +67,8 @@ TEST(ServerProgram, BothCodersOfDracoServeTheSameTilesAndSayWhichTheyAre) {
     EXPECT_EQ(a->status, 200);
     EXPECT_TRUE(a->body == b->body) << path.text();
   }
+  EXPECT_THAT(test::httpGet(fast.url(), "/metrics")->body, HasSubstr("terrane_draco_template{body=\"moon\"} 1\n"));
+  EXPECT_THAT(test::httpGet(stock.url(), "/metrics")->body, HasSubstr("terrane_draco_template{body=\"moon\"} 0\n"));
   fast.signal(SIGTERM);
   stock.signal(SIGTERM);
   EXPECT_THAT(fast.wait().standardError, HasSubstr("moon: tiles are encoded by a template learnt from libdraco"));

@@ -67,7 +67,7 @@ std::vector<double> noiseAt(const std::vector<glm::dvec3>& positions, const Nois
       block->y[i] = p.y;
       block->z[i] = p.z;
     }
-    evaluateOctave<Real>(rotateBlock(*block, rotation), octave, *samples);
+    evaluateOctave<Real, lunar::Wanted::All>(rotateBlock(*block, rotation), octave, *samples);
     for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<double>(samples->value[i]));
   }
   return values;

@@ -74,6 +74,25 @@ TEST(LunarField, ASampleDoesNotDependOnItsBatch) {
   }
 }
 
+TEST(LunarField, HeightsAskedForAloneHaveTheSameBits) {
+  std::mt19937_64 random(12);
+  for (const SimdPath path : supportedPaths()) {
+    const auto field = makeHeightField(testMoon(), path);
+    for (int level = 0; level <= 24; ++level) {
+      const TilePlace t = randomTile(random, level);
+      const Directions grid = tileGrid(t.face, t.level, t.column, t.row);
+      const SurfaceSamples all = evaluate(*field, grid, 2 * tileSpacing(level));
+      SampleBatch batch = grid.batch();
+      batch.grid =
+          GridPlace{FacePath::wholeFace(Scheme::Cube, t.face), 64, 0};  // an edge: the lunar field looks no closer
+      SurfaceSamples heights;
+      heights.scratch = all.scratch;
+      field->evaluate(batch, 2 * tileSpacing(level), heights);
+      ASSERT_EQ(all.heightMeters, heights.heightMeters) << "level " << level;
+    }
+  }
+}
+
 TEST(LunarField, TilesThatShareAnEdgeAgreeOnIt) {
   const auto field = makeHeightField(testMoon(), bestSimdPath());
   for (int level = 1; level <= 24; level += 3) {

@@ -50,6 +50,7 @@ TEST(TileUrl, FixedRoutesAreFound) {
   EXPECT_TRUE(std::holds_alternative<RootPage>(*parseTarget("/")));
   EXPECT_TRUE(std::holds_alternative<HealthCheck>(*parseTarget("/healthz")));
   EXPECT_TRUE(std::holds_alternative<ReadyCheck>(*parseTarget("/readyz")));
+  EXPECT_TRUE(std::holds_alternative<Metrics>(*parseTarget("/metrics")));
   EXPECT_TRUE(std::holds_alternative<SceneDocument>(*parseTarget(kSceneTarget)));
 }
 

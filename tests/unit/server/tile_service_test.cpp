@@ -220,6 +220,20 @@ TEST_F(TileServiceTest, HealthIsAlwaysGoodAndReadinessFollowsTheSwitch) {
   EXPECT_EQ(notReady.retryAfterSeconds, 1);
 }
 
+TEST_F(TileServiceTest, MetricsCountWhatWasAsked) {
+  makePlain();
+  ask(tile("moon/cube/0"));
+  ask(tile("moon/cube/0"));
+  const ServiceResponse metrics = ask("/metrics");
+  EXPECT_EQ(metrics.status, 200);
+  EXPECT_THAT(std::string(metrics.contentType), testing::StartsWith("text/plain; version=0.0.4"));
+  EXPECT_EQ(metrics.cacheControl, "no-store");
+  EXPECT_THAT(metrics.body, HasSubstr("\nterrane_tile_hits_total 1\n"));
+  EXPECT_THAT(metrics.body, HasSubstr("\nterrane_tile_builds_total 1\n"));
+  EXPECT_THAT(metrics.body, HasSubstr("\n# TYPE terrane_tile_memory_bytes gauge\n"));
+  EXPECT_THAT(metrics.body, testing::EndsWith("\n"));
+}
+
 TEST_F(TileServiceTest, ABuildThatFailsOrThrowsIsAnInternalErrorAndTheNextRequestTriesAgain) {
   int calls = 0;
   make([&](const TileKey&) -> Result<std::vector<std::uint8_t>> {
