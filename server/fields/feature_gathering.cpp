@@ -1,5 +1,6 @@
 #include "server/fields/feature_gathering.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/numerics/strict_math.h"
@@ -51,27 +52,44 @@ void FeatureGathering::start(const std::shared_ptr<const FeatureTables>& tables,
 GatheredFeatures FeatureGathering::near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
                                         const FeatureWants& wants) {
   if (!covers(*tables, points)) start(tables, points.ball);
-  return {runs(wants.minWavelengthMeters, wants.inDouble),
-          wants.halos ? halos(wants.minWavelengthMeters) : std::span<const Halo>()};
+  return {runs(points, wants), wants.halos ? halos(wants.minWavelengthMeters) : std::span<const Halo>()};
 }
 
-std::span<const FeatureRun> FeatureGathering::runs(double minWavelength, bool inDouble) {
-  const std::vector<FeatureLayer>& layers = tables_->layers;
-  std::size_t count = 0;
-  while (count < layers.size() && layers[count].longestWavelengthMeters() >= minWavelength) ++count;
+void FeatureGathering::gatherForBall(std::size_t count) {
   while (layerEnds_.size() < count) {
-    gatherFeatures(layers[layerEnds_.size()], tables_->bodyRadius, ball_.center, ball_.radius, features_);
+    gatherFeatures(tables_->layers[layerEnds_.size()], tables_->bodyRadius, BallTarget(ball_), features_);
     layerEnds_.push_back(features_.size());
   }
+}
+
+std::span<const FeatureRun> FeatureGathering::runs(const PointSet& points, const FeatureWants& wants) {
+  const std::vector<FeatureLayer>& layers = tables_->layers;
+  std::size_t count = 0;
+  while (count < layers.size() && layers[count].longestWavelengthMeters() >= wants.minWavelengthMeters) ++count;
+  if (!wants.row) gatherForBall(count);
   runs_.clear();
-  for (std::size_t i = 0, begin = 0; i < count; begin = layerEnds_[i++]) {
-    if (layerEnds_[i] == begin) continue;
-    runs_.push_back({features_.data() + begin, layerEnds_[i] - begin, layers[i].stage,
-                     inDouble && layers[i].exponent >= kDoubleExponent});
+  const auto add = [&](const std::vector<Feature>& from, std::size_t begin, std::size_t end,
+                       const FeatureLayer& layer) {
+    if (begin == end) return;
+    runs_.push_back(
+        {from.data() + begin, end - begin, layer.stage, wants.inDouble && layer.exponent >= kDoubleExponent});
+  };
+  const std::size_t kept = std::min(count, layerEnds_.size());
+  for (std::size_t i = 0, begin = 0; i < kept; begin = layerEnds_[i++]) add(features_, begin, layerEnds_[i], layers[i]);
+  if (kept < count) {
+    const RowTarget row(points);
+    rowFeatures_.clear();
+    rowEnds_.clear();
+    for (std::size_t i = kept; i < count; ++i) {
+      gatherFeatures(layers[i], tables_->bodyRadius, row, rowFeatures_);
+      rowEnds_.push_back(rowFeatures_.size());
+    }
+    for (std::size_t i = kept, begin = 0; i < count; begin = rowEnds_[i++ - kept])
+      add(rowFeatures_, begin, rowEnds_[i - kept], layers[i]);
   }
   std::size_t shown = 0;
-  while (shown < landmarks_.size() && landmarks_[shown].radius >= minWavelength) ++shown;
-  if (shown > 0) runs_.push_back({landmarks_.data(), shown, FeatureStage::YoungCrater, inDouble});
+  while (shown < landmarks_.size() && landmarks_[shown].radius >= wants.minWavelengthMeters) ++shown;
+  if (shown > 0) runs_.push_back({landmarks_.data(), shown, FeatureStage::YoungCrater, wants.inDouble});
   return runs_;
 }
 
@@ -80,7 +98,7 @@ std::span<const Halo> FeatureGathering::halos(double minWavelength) {
   std::size_t count = 0;
   while (count < layers.size() && layers[count].longestHaloMeters() >= minWavelength) ++count;
   while (haloEnds_.size() <= count) {
-    gatherHalos(layers[haloEnds_.size() - 1], tables_->bodyRadius, ball_.center, ball_.radius, halos_);
+    gatherHalos(layers[haloEnds_.size() - 1], tables_->bodyRadius, BallTarget(ball_), halos_);
     haloEnds_.push_back(halos_.size());
   }
   return std::span(halos_).first(haloEnds_[count]);

@@ -1,6 +1,7 @@
 #pragma once
 // The craters, their halos and the rocks near a ball, gathered once for all batches that lie within it: a tile's grid,
-// then its borders at the levels beside it. Body frame, metres. Belongs to one thread.
+// then its borders at the levels beside it. What only the borders ask for is gathered near them alone. Body frame,
+// metres. Belongs to one thread.
 
 #include <memory>
 #include <span>
@@ -10,19 +11,6 @@
 #include "server/fields/lunar_program.h"
 
 namespace terrane::lunar {
-
-struct Ball {
-  double center[3] = {0, 0, 0};
-  double radius = 0;
-};
-
-/// Points at scale * (x, y, z), and a ball around them.
-struct PointSet {
-  const double *x, *y, *z;
-  std::size_t count;
-  double scale;
-  Ball ball;
-};
 
 /// All features of a body. Immutable once made.
 struct FeatureTables {
@@ -37,6 +25,9 @@ struct FeatureWants {
   double minWavelengthMeters;
   bool inDouble;  ///< large features are computed in double
   bool halos;
+  /// The points are a row within what is gathered already, and the finest layers are asked for by few: only what is
+  /// near them is gathered, and not kept.
+  bool row;
 };
 
 struct GatheredFeatures {
@@ -54,7 +45,9 @@ class FeatureGathering {
 
  private:
   bool covers(const FeatureTables& tables, const PointSet& points) const noexcept;
-  std::span<const FeatureRun> runs(double minWavelength, bool inDouble);
+  std::span<const FeatureRun> runs(const PointSet& points, const FeatureWants& wants);
+  /// Gathers the first count layers for the ball.
+  void gatherForBall(std::size_t count);
   std::span<const Halo> halos(double minWavelength);
   void start(const std::shared_ptr<const FeatureTables>& tables, const Ball& ball);
 
@@ -64,6 +57,8 @@ class FeatureGathering {
   std::vector<Halo> halos_;
   std::vector<std::size_t> layerEnds_,
       haloEnds_;  ///< of the layers gathered so far; of the landmarks' halos before them
+  std::vector<Feature> rowFeatures_;
+  std::vector<std::size_t> rowEnds_;
   std::vector<FeatureRun> runs_;
 };
 

@@ -120,30 +120,6 @@ Feature makeRock(const double direction[3], double bodyRadius, double diameter, 
   return f;
 }
 
-struct Range {
-  std::uint32_t first = 1, last = 0;  ///< empty if first > last
-};
-
-/// Cells along one face axis that a ball may touch: the ball's box, projected from the body's centre. along, outward:
-/// the ball's centre.
-Range cellRange(double along, double outward, double reach, std::uint32_t cells) noexcept {
-  const double nearest = outward - reach, farthest = outward + reach;
-  if (std::fabs(along) - reach > farthest) return {};  // beside or behind the face's pyramid |along| <= outward
-  double low = -1, high = 1;
-  if (nearest > 0) {
-    low = (along - reach) / (along - reach < 0 ? nearest : farthest);
-    high = (along + reach) / (along + reach < 0 ? farthest : nearest);
-  }
-  if (low > 1 || high < -1) return {};
-  const double scale = 0.5 * static_cast<double>(cells);
-  // A cell of slack absorbs the rounding of atan.
-  const double first = std::floor((atanQuarterPi(std::clamp(low, -1.0, 1.0)) + 1) * scale - 1e-3);
-  const double last = std::floor((atanQuarterPi(std::clamp(high, -1.0, 1.0)) + 1) * scale + 1e-3);
-  const double top = static_cast<double>(cells - 1);
-  return {static_cast<std::uint32_t>(std::clamp(first, 0.0, top)),
-          static_cast<std::uint32_t>(std::clamp(last, 0.0, top))};
-}
-
 /// One cell along one axis of its face, and the squares of the tangents of its sides: the smallest and largest within.
 struct CellSpan {
   double start, width;
@@ -203,35 +179,15 @@ Feature featureAt(const FeatureLayer& layer, double bodyRadius, const Site& site
   return makeCrater(site.direction, bodyRadius, site.diameter, wearOf(layer, site.hash), site.hash);
 }
 
-/// A ball that features may reach into.
-struct Target {
-  const double* center;
-  double radius;
-
-  bool touchedFrom(const double at[3], double scale, double reach) const noexcept {
-    const double dx = at[0] * scale - center[0], dy = at[1] * scale - center[1], dz = at[2] * scale - center[2];
-    const double limit = radius + reach;
-    return dx * dx + dy * dy + dz * dz <= limit * limit;
-  }
-};
-
-/// Calls visit(site) for the feature of every occupied cell within reach of the ball, in the order face, row, column;
+/// Calls visit(site) for the feature of every occupied cell within reach of the target, in the order face, row, column;
 /// where matters(hash) is false the site is not even computed.
-template <class Matters, class Visit>
-void forEachSite(const FeatureLayer& layer, double bodyRadius, const Target& ball, double reach, const Matters& matters,
-                 const Visit& visit) {
+template <class Target, class Matters, class Visit>
+void forEachSite(const FeatureLayer& layer, double bodyRadius, const Target& target, double reach,
+                 const Matters& matters, const Visit& visit) {
   thread_local std::vector<CellSpan> columnSpans;
-  const double within = ball.radius + reach;
   for (int face = 0; face < 6; ++face) {
-    const FaceAxes& axes = cubeFaceAxes(face);
-    const auto along = [&](const glm::dvec3& a) {
-      return a.x * ball.center[0] + a.y * ball.center[1] + a.z * ball.center[2];
-    };
-    const double outward = along(axes.normal);
-    if (outward + within < 0) continue;
-    const Range columns = cellRange(along(axes.u), outward, within, layer.cellsPerFace);
-    const Range rows = cellRange(along(axes.v), outward, within, layer.cellsPerFace);
-    if (columns.first > columns.last) continue;
+    const auto [columns, rows] = target.cells(face, reach, layer.cellsPerFace);
+    if (columns.empty()) continue;
     columnSpans.clear();
     for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
       const CellSpan rowSpan = cellSpan(layer, row);
@@ -307,21 +263,22 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
   return true;
 }
 
-void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const double center[3], double ballRadius,
-                    std::vector<Feature>& out) {
+template <class Target>
+void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const Target& target, std::vector<Feature>& out) {
   const bool rock = layer.stage == FeatureStage::Rock;
   const double reach =
       0.51 * layer.largestDiameter() * (rock ? 1 / (1 - kRockLobes) : kApronRadii / (1 - kCraterLobes));
-  const Target ball{center, ballRadius};
   forEachSite(
-      layer, bodyRadius, ball, reach, [](std::uint64_t) { return true; },
+      layer, bodyRadius, target, reach, [](std::uint64_t) { return true; },
       [&](const Site& site) {
-        // The shape costs more than the place: most of what lies in the cells around a ball does not reach it.
-        if (!ball.touchedFrom(site.direction, bodyRadius, widened(site.reach, bodyRadius))) return;
+        // The shape costs more than the place: most of what lies in the cells around a target does not reach it.
+        if (!target.touchedFrom(site.direction, bodyRadius, widened(site.reach, bodyRadius))) return;
         const Feature f = featureAt(layer, bodyRadius, site);
-        if (ball.touchedFrom(f.center, 1.0, f.reach)) out.push_back(f);
+        if (target.touchedFrom(f.center, 1.0, f.reach)) out.push_back(f);
       });
 }
+template void gatherFeatures(const FeatureLayer&, double, const BallTarget&, std::vector<Feature>&);
+template void gatherFeatures(const FeatureLayer&, double, const RowTarget&, std::vector<Feature>&);
 
 Halo makeHalo(const Feature& crater, double brightness, double rays) noexcept {
   Halo h{};
@@ -335,10 +292,8 @@ Halo makeHalo(const Feature& crater, double brightness, double rays) noexcept {
   return h;
 }
 
-void gatherHalos(const FeatureLayer& layer, double bodyRadius, const double center[3], double ballRadius,
-                 std::vector<Halo>& out) {
+void gatherHalos(const FeatureLayer& layer, double bodyRadius, const BallTarget& ball, std::vector<Halo>& out) {
   if (!layer.hasHalos()) return;
-  const Target ball{center, ballRadius};
   forEachSite(
       layer, bodyRadius, ball, 0.51 * layer.largestDiameter() * kHaloRadii,
       [&](std::uint64_t hash) { return wearOf(layer, hash) < kHaloWear; },

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The viewer's frame beside a bare loop; then the whole program: memory, and start to first full view against a cold and a warm server.
+# The viewer's frame beside a bare loop; then the whole program: memory, and start to first full view against a cold server, by each encoder, and a warm one.
 # Usage: tests/bench/viewer_bench.sh [BIN_DIR] [FRAMES]; prints Markdown.
 set -euo pipefail
 bin=${1:-build/release/bin}
@@ -10,10 +10,10 @@ work=$(mktemp -d)
 server=
 cleanup() { [ -n "$server" ] && kill "$server" 2>/dev/null; wait 2>/dev/null || true; rm -rf "$work"; }
 trap cleanup EXIT
-startServer() {
+startServer() {  # [FLAG...]
   [ -n "$server" ] && { kill "$server"; wait "$server" || true; }
   : >"$work/ready"
-  "$bin/terrane-server" --scene moon --listen 127.0.0.1:0 >"$work/ready" 2>/dev/null &
+  "$bin/terrane-server" --scene moon --listen 127.0.0.1:0 "$@" >"$work/ready" 2>/dev/null &
   server=$!
   for _ in $(seq 100); do [ -s "$work/ready" ] && break; sleep 0.05; done
   url=$(grep -o 'http://[^ ]*' "$work/ready" | head -n 1)
@@ -22,10 +22,12 @@ view() {  # NAME CAMERA
   "$bin/terrane-view" --server "$url" --headless --settle --cache none --size 1280x720 --above-ground --camera="$1" --stats "$work/$2.json" >/dev/null
 }
 echo
-echo "| whole program, 1280×720 | cold server: first full view ms | warm server ms | tiles drawn | requests | KB | RSS MB |"
-echo "|---|---|---|---|---|---|---|"
+echo "| whole program, 1280×720 | cold server: first full view ms | the same, tiles by stock Draco | warm server ms | tiles drawn | requests | KB | RSS MB |"
+echo "|---|---|---|---|---|---|---|---|"
 while IFS='|' read -r name camera; do
   for round in 1 2 3; do
+    startServer --draco stock
+    view "$camera" "stock$round"
     startServer
     view "$camera" "cold$round"
     view "$camera" "warm$round"
@@ -33,10 +35,9 @@ while IFS='|' read -r name camera; do
   python3 - "$work" "$name" <<'PY'
 import json, statistics, sys
 work, name = sys.argv[1:]
-cold = [json.load(open(f"{work}/cold{i}.json")) for i in (1, 2, 3)]
-warm = [json.load(open(f"{work}/warm{i}.json")) for i in (1, 2, 3)]
+stock, cold, warm = ([json.load(open(f"{work}/{kind}{i}.json")) for i in (1, 2, 3)] for kind in ("stock", "cold", "warm"))
 m = lambda rows, key: statistics.median(row[key] for row in rows)
-print(f"| {name} | {m(cold, 'msToSettle'):.0f} | {m(warm, 'msToSettle'):.0f} | {m(warm, 'tilesDrawn'):.0f} | {m(warm, 'requests'):.0f} "
+print(f"| {name} | {m(cold, 'msToSettle'):.0f} | {m(stock, 'msToSettle'):.0f} | {m(warm, 'msToSettle'):.0f} | {m(warm, 'tilesDrawn'):.0f} | {m(warm, 'requests'):.0f} "
       f"| {m(warm, 'bytesReceived') / 1024:.0f} | {m(warm, 'rssBytes') / 2**20:.0f} |")
 PY
 done <<'VIEWS'

@@ -131,9 +131,20 @@ bool FakeServer::answer(int socket, const std::string& target) {
                              " X\r\nContent-Length: " + std::to_string(reply.body.size()) + "\r\n" + reply.headers +
                              "\r\n" + reply.body;
   const std::size_t first = answer.size() - (reply.holdHalfway ? reply.body.size() / 2 : 0);
-  if (!sendAll(socket, answer.substr(0, first))) return false;
-  if (reply.holdHalfway && !(holdBack(socket) && sendAll(socket, answer.substr(first)))) return false;
+  if (!send(socket, answer.substr(0, first))) return false;
+  if (reply.holdHalfway && !(holdBack(socket) && send(socket, answer.substr(first)))) return false;
   return !reply.closeAfter;
+}
+
+/// A client may close before it was sent all that is not held back.
+bool FakeServer::send(int socket, const std::string& text) {
+  if (sendAll(socket, text)) return true;
+  {
+    const std::lock_guard lock(mutex_);
+    ++abandoned_;
+  }
+  changed_.notify_all();
+  return false;
 }
 
 bool FakeServer::holdBack(int socket) {

@@ -42,7 +42,7 @@ class FakeServer {
 
   std::vector<std::string> targets() const;  ///< in order of arrival
   int connections() const;                   ///< accepted so far
-  int abandoned() const;                     ///< closed by the client while an answer was held
+  int abandoned() const;                     ///< closed by the client before it had the whole answer
   int holding() const;
 
   /// Wait for a state; false after a generous time.
@@ -56,6 +56,7 @@ class FakeServer {
   bool answer(int socket, const std::string& target);
   /// False if the client went away or the server stops.
   bool holdBack(int socket);
+  bool send(int socket, const std::string& text);
   bool waitUntil(const std::function<bool()>& reached) const;
 
   Handler handler_;

@@ -21,8 +21,7 @@ glm::dvec3 centerOf(const Feature& f) { return {f.center[0], f.center[1], f.cent
 
 void gather(const FeatureLayer& layer, const glm::dvec3& at, double radius, std::vector<Feature>& out) {
   out.clear();
-  const double center[3] = {at.x, at.y, at.z};
-  gatherFeatures(layer, kMoonRadius, center, radius, out);
+  gatherFeatures(layer, kMoonRadius, BallTarget({{at.x, at.y, at.z}, radius}), out);
 }
 
 /// A feature's bowl or body, with its outline's widest lobe.
@@ -107,6 +106,48 @@ TEST(FeatureLayers, SmallLayersAreGatheredTheSameFromEveryBall) {
   }
 }
 
+// Rows of the tiles' sizes and larger, anywhere: over edges and corners of faces, and round a third of the body.
+TEST(FeatureLayers, ARowFindsWhatTouchesItsPointsInTheOrderOfTheBall) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> sizes(2, 40);
+  std::size_t around = 0, near = 0, touching = 0;
+  for (const FeatureLayer& layer : crowdedLayers()) {
+    for (int i = 0; i < 10; ++i) {
+      const glm::dvec3 start = i < 3 ? glm::normalize(glm::dvec3(1, i % 2 ? 1 : -1, i)) : randomDirection(random);
+      const double length = std::min(sizes(random) * layer.largestDiameter() / kMoonRadius, 1.5);
+      const glm::dvec3 end = glm::normalize(start + length * randomDirection(random));
+      std::vector<double> x, y, z;
+      for (int k = 0; k <= 64; ++k) {
+        const glm::dvec3 p = glm::normalize(start + (end - start) * (k / 64.0));
+        x.push_back(p.x);
+        y.push_back(p.y);
+        z.push_back(p.z);
+      }
+      const glm::dvec3 middle = glm::normalize(start + end) * kMoonRadius;
+      const Ball ball{{middle.x, middle.y, middle.z}, 1.001 * glm::distance(middle, start * kMoonRadius)};
+      std::vector<Feature> ofBall, ofRow;
+      gatherFeatures(layer, kMoonRadius, BallTarget(ball), ofBall);
+      gatherFeatures(layer, kMoonRadius, RowTarget({x.data(), y.data(), z.data(), x.size(), kMoonRadius, ball}), ofRow);
+      std::size_t next = 0;
+      for (const Feature& f : ofBall) {
+        const bool found = next < ofRow.size() && centerOf(ofRow[next]) == centerOf(f);
+        next += found ? 1 : 0;
+        for (std::size_t k = 0; k < x.size(); ++k) {
+          if (glm::distance(glm::dvec3(x[k], y[k], z[k]) * kMoonRadius, centerOf(f)) > f.reach) continue;
+          ASSERT_TRUE(found) << "exponent " << layer.exponent << ", row " << i;
+          ++touching;
+          break;
+        }
+      }
+      ASSERT_EQ(next, ofRow.size()) << "what the ball has not, or in another order";
+      around += ofBall.size();
+      near += ofRow.size();
+    }
+  }
+  std::printf("in the ball %zu, near the row %zu, touching its points %zu\n", around, near, touching);
+  EXPECT_LT(near, around / 2);
+}
+
 TEST(FeatureLayers, HalosAreThoseOfTheYoungestCratersFromEveryBall) {
   std::mt19937_64 random(11);
   std::size_t found = 0;
@@ -115,11 +156,10 @@ TEST(FeatureLayers, HalosAreThoseOfTheYoungestCratersFromEveryBall) {
       const glm::dvec3 d = randomDirection(random), at = d * kMoonRadius;
       const double size = layer.largestDiameter(), ball = 8 * size;
       const glm::dvec3 inside = glm::normalize(at + 2 * size * randomDirection(random)) * kMoonRadius;
-      const double center[3] = {at.x, at.y, at.z}, nearCenter[3] = {inside.x, inside.y, inside.z};
       std::vector<Halo> wide, narrow;
       std::vector<Feature> craters;
-      gatherHalos(layer, kMoonRadius, center, ball, wide);
-      gatherHalos(layer, kMoonRadius, nearCenter, size, narrow);
+      gatherHalos(layer, kMoonRadius, BallTarget({{at.x, at.y, at.z}, ball}), wide);
+      gatherHalos(layer, kMoonRadius, BallTarget({{inside.x, inside.y, inside.z}, size}), narrow);
       gather(layer, at, ball, craters);
       std::erase_if(craters, [&](const Feature& f) { return glm::distance(centerOf(f), at) > ball; });
       std::size_t expected = 0;

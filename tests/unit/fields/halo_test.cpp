@@ -19,10 +19,10 @@ std::vector<Halo> brightHalos(int exponent, std::size_t count) {
   const std::vector<FeatureLayer> layers = makeLayers({kMoonRadius, 1.0, 0.0, 0.001, 1969});
   while (bright.size() < count) {
     const glm::dvec3 at = randomDirection(random) * kMoonRadius;
-    const double center[3] = {at.x, at.y, at.z};
     near.clear();
     for (const FeatureLayer& layer : layers)
-      if (layer.exponent == exponent) gatherHalos(layer, kMoonRadius, center, 20 * layer.largestDiameter(), near);
+      if (layer.exponent == exponent)
+        gatherHalos(layer, kMoonRadius, BallTarget({{at.x, at.y, at.z}, 20 * layer.largestDiameter()}), near);
     for (const Halo& h : near)
       if (h.brightness > 0.04f && bright.size() < count) bright.push_back(h);
   }

@@ -74,21 +74,28 @@ TEST(LunarField, ASampleDoesNotDependOnItsBatch) {
   }
 }
 
-TEST(LunarField, HeightsAskedForAloneHaveTheSameBits) {
+// As a tile's builder asks: the grid, then each border at the levels beside it, of which heights alone are wanted.
+TEST(LunarField, HeightsOfBordersHaveTheBitsOfWholeSamples) {
   std::mt19937_64 random(12);
   for (const SimdPath path : supportedPaths()) {
     const auto field = makeHeightField(testMoon(), path);
     for (int level = 0; level <= 24; ++level) {
       const TilePlace t = randomTile(random, level);
       const Directions grid = tileGrid(t.face, t.level, t.column, t.row);
-      const SurfaceSamples all = evaluate(*field, grid, 2 * tileSpacing(level));
-      SampleBatch batch = grid.batch();
-      batch.grid =
-          GridPlace{FacePath::wholeFace(Scheme::Cube, t.face), 64, 0};  // an edge: the lunar field looks no closer
-      SurfaceSamples heights;
-      heights.scratch = all.scratch;
-      field->evaluate(batch, 2 * tileSpacing(level), heights);
-      ASSERT_EQ(all.heightMeters, heights.heightMeters) << "level " << level;
+      const double wavelength = 2 * tileSpacing(level);
+      SurfaceSamples built = evaluate(*field, grid, wavelength);
+      for (int edge = 0; edge < 4; ++edge) {
+        Directions border;
+        for (std::size_t k = 0; k < 65; ++k)
+          border.add(grid.at(edge == 0 ? k : edge == 1 ? 65 * k + 64 : edge == 2 ? 64 * 65 + 64 - k : 65 * (64 - k)));
+        SampleBatch batch = border.batch();
+        batch.grid = GridPlace{FacePath::wholeFace(Scheme::Cube, t.face), 64, edge};
+        for (const double finer : {2.0, 1.0, 0.5}) {
+          const SurfaceSamples alone = evaluate(*field, border, finer * wavelength);
+          field->evaluate(batch, finer * wavelength, built);
+          ASSERT_EQ(alone.heightMeters, built.heightMeters) << "level " << level << ", edge " << edge;
+        }
+      }
     }
   }
 }
