@@ -21,6 +21,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/folders.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,7 +183,7 @@ std::vector<std::string> findCircle(const Graph& graph) {
 const std::vector<SourceFile>& sourceTree() {
   static const std::vector<SourceFile> files = [] {
     std::vector<SourceFile> found;
-    const fs::path root = TERRANE_SOURCE_DIR;
+    const fs::path root = terrane::test::sourceFolder();
     for (const char* top : {"common", "proto", "server", "client", "tests"}) {
       for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
         const std::string extension = entry.path().extension().string();

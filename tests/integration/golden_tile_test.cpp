@@ -13,6 +13,7 @@
 #include <random>
 
 #include "server/build/tile_builder.h"
+#include "tests/support/folders.h"
 #include "tests/support/grounds.h"
 #include "tests/support/ico_points.h"
 
@@ -21,7 +22,7 @@ namespace {
 
 std::string goldenFile(const test::Ground& ground) {
   const std::string name = ground.field == FieldKind::Lunar ? "moon" : std::string(fieldRow(ground.field).name);
-  return std::string(TERRANE_SOURCE_DIR) + "/tests/golden/" + name +
+  return test::sourceFolder() + "/tests/golden/" + name +
          (ground.scheme == Scheme::Cube ? "_tiles.txt" : "_ico_tiles.txt");
 }
 

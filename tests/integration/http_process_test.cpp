@@ -15,6 +15,7 @@
 #include "proto/tile_url.h"
 #include "tests/integration/http_client.h"
 #include "tests/integration/server_process.h"
+#include "tests/support/folders.h"
 
 namespace terrane {
 namespace {
@@ -136,7 +137,7 @@ TEST(ServerProgram, ANameThatCannotBeResolvedIsOneLineAndAFailure) {
 
 TEST(ServerProgram, TheStatusIsTheSameWhereNobodyCanBeTold) {
   for (const char* nowhere : {"2>&-", "2>/dev/full"}) {
-    const std::string command = TERRANE_BINARY_DIR "/bin/terrane-server --bogus " + std::string(nowhere);
+    const std::string command = test::buildFolder() + "/bin/terrane-server --bogus " + std::string(nowhere);
     EXPECT_EQ(test::runProgram({"sh", "-c", command}).exitStatus, 2) << nowhere;
   }
 }
@@ -241,7 +242,8 @@ TEST(ServerProgram, WhatIsWrongInAConfigurationFileIsOnePrintableLineWithFileLin
 
 TEST(ServerProgram, CheckRefusesEveryBrokenSceneInOneLineWithFileAndLine) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(TERRANE_SOURCE_DIR "/tests/unit/server/broken_scenes")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::sourceFolder() + "/tests/unit/server/broken_scenes")) {
     const FinishedProcess end = runServer({"--check", "--scene", entry.path().string()});
     EXPECT_EQ(end.exitStatus, 2) << entry.path();
     EXPECT_TRUE(isOneLine(end.standardError)) << end.standardError;

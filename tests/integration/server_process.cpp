@@ -1,4 +1,5 @@
 #include "tests/integration/server_process.h"
+#include "tests/support/folders.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -83,7 +84,7 @@ FinishedProcess finish(const Child& child) {
   return result;
 }
 
-std::string serverProgram() { return TERRANE_BINARY_DIR "/bin/terrane-server"; }
+std::string serverProgram() { return test::buildFolder() + "/bin/terrane-server"; }
 
 }  // namespace
 

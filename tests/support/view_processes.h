@@ -1,5 +1,5 @@
 #pragma once
-// terrane-server and terrane-view as their users run them, for tests. TERRANE_BINARY_DIR is the build folder.
+// terrane-server and terrane-view as their users run them, for tests.
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "tests/support/child_process.h"
+#include "tests/support/folders.h"
 
 namespace terrane::testing_support {
 
-inline std::string programFile(const std::string& name) { return std::string(TERRANE_BINARY_DIR) + "/bin/" + name; }
+inline std::string programFile(const std::string& name) { return test::buildFolder() + "/bin/" + name; }
 
 /// A server on a port of the system's choosing. url is empty if it did not come up.
 struct RunningServer {

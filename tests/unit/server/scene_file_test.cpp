@@ -12,6 +12,7 @@
 
 #include "common/tiling/lattice.h"
 #include "server/fields/height_field.h"
+#include "tests/support/folders.h"
 
 namespace terrane {
 namespace {
@@ -164,7 +165,8 @@ TEST_P(BrokenScene, GivesOneLineWithFileLineKeyAndWhatIsAllowed) {
 
 std::vector<std::filesystem::path> brokenScenes() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(TERRANE_SOURCE_DIR "/tests/unit/server/broken_scenes"))
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::sourceFolder() + "/tests/unit/server/broken_scenes"))
     files.push_back(entry.path());
   std::ranges::sort(files);
   return files;
