@@ -13,6 +13,7 @@
 #include <string>
 
 #include "proto/draco_template.h"
+#include "tests/support/sanitizers.h"
 #include "tests/unit/server/built_tiles.h"
 
 namespace terrane {
@@ -22,11 +23,7 @@ using namespace test;
 
 constexpr unsigned kSeed = 71;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kDefaultTiles = 200;
-#else
-constexpr int kDefaultTiles = 800;
-#endif
+constexpr int kDefaultTiles = test::kAddressSanitizer ? 200 : 800;
 
 int tilesInAll() {
   const char* text = std::getenv("TERRANE_DRACO_TILES");

@@ -16,6 +16,7 @@
 #include "tests/integration/http_client.h"
 #include "tests/integration/server_process.h"
 #include "tests/support/folders.h"
+#include "tests/support/sanitizers.h"
 
 namespace terrane {
 namespace {
@@ -278,10 +279,10 @@ TEST(ServerProgram, ExplainCountsExactlyWhatEachSceneNames) {
 
 // With few file descriptors the server cannot take every connection; it must take new ones again as soon as it can.
 TEST(ServerProgram, RunningOutOfFileDescriptorsDoesNotEndTheListener) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the undefined-behaviour sanitizer probes memory through a pipe, and without file descriptors takes "
-                  "all of it for bad";
-#endif
+  if (test::kAddressSanitizer)
+    GTEST_SKIP()
+        << "the undefined-behaviour sanitizer probes memory through a pipe, and without file descriptors takes "
+           "all of it for bad";
   ServerProcess server({"--scene", "smooth"}, "ulimit -n 24; ");
   {
     std::vector<std::unique_ptr<HttpConnection>> connections;
@@ -289,7 +290,10 @@ TEST(ServerProgram, RunningOutOfFileDescriptorsDoesNotEndTheListener) {
       connections.push_back(std::make_unique<HttpConnection>(server.url()));
       ASSERT_TRUE(connections.back()->open());
     }
-    while (server.openFiles() < 24) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (server.openFiles() < 24) {
+      ASSERT_TRUE(server.isRunning());
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     EXPECT_EQ(connections.front()->request("/healthz")->status, 200) << "those that have a place are served";
   }
   const auto answer = test::httpGet(server.url(), "/healthz");

@@ -13,6 +13,7 @@
 #include "server/http/http_server.h"
 #include "tests/support/both_schemes.h"
 #include "tests/support/moon_body.h"
+#include "tests/support/sanitizers.h"
 
 namespace terrane {
 namespace {
@@ -20,11 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kGpuBytes = 100'000;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kSteps = 100;
-#else
-constexpr int kSteps = 1000;
-#endif
+constexpr int kSteps = test::kSanitized ? 100 : 1000;
 constexpr double kErrorPixels = 2;
 constexpr std::size_t kServerCache = 64u << 20;
 

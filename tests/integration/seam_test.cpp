@@ -19,6 +19,7 @@
 #include "tests/support/grounds.h"
 #include "tests/support/ico_points.h"
 #include "tests/support/moon_body.h"
+#include "tests/support/sanitizers.h"
 
 namespace terrane {
 namespace {
@@ -26,11 +27,7 @@ namespace {
 using namespace testing_support;
 
 constexpr unsigned kSeed = 24;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kPairs = 400;
-#else
-constexpr int kPairs = 10'000;
-#endif
+constexpr int kPairs = test::kSanitized ? 400 : 10'000;
 
 /// A tile as a viewer gets it: from its bytes.
 Tile decoded(const TileBuilder& builder, const FacePath& path) {

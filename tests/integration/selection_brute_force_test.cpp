@@ -26,17 +26,14 @@
 #include "proto/resident_tile.h"
 #include "server/build/tile_builder.h"
 #include "tests/support/moon_body.h"
+#include "tests/support/sanitizers.h"
 
 namespace terrane {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr long kCamerasForShare = 40;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kDefaultCameras = 4;
-#else
-constexpr int kDefaultCameras = 150;
-#endif
+constexpr int kDefaultCameras = test::kSanitized ? 4 : 150;
 long environmentNumber(const char* name, long otherwise) {
   const char* text = std::getenv(name);
   return text != nullptr ? std::strtol(text, nullptr, 10) : otherwise;

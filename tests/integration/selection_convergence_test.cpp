@@ -14,6 +14,7 @@
 #include "proto/resident_tile.h"
 #include "server/build/tile_builder.h"
 #include "tests/support/moon_body.h"
+#include "tests/support/sanitizers.h"
 
 namespace terrane {
 namespace {
@@ -22,11 +23,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kFieldOfView = 0.9;
 /// Every round knows one level more at least; with a few levels asked for ahead, most views take seven or eight.
 constexpr int kMostRounds = 20;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kLowCameras = 2;
-#else
-constexpr int kLowCameras = 10;
-#endif
+constexpr int kLowCameras = test::kSanitized ? 2 : 10;
 
 /// A viewer of the moon without a budget: what was asked for once stays resident.
 class PatientViewer {

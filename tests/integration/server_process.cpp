@@ -129,6 +129,11 @@ int ServerProcess::openFiles() const {
   return failure ? 0 : static_cast<int>(std::distance(begin(files), end(files)));
 }
 
+bool ServerProcess::isRunning() const {
+  siginfo_t ended{};
+  return waitid(P_PID, static_cast<id_t>(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == 0;
+}
+
 FinishedProcess ServerProcess::wait() {
   const FinishedProcess result = finish({pid_, output_, error_});
   pid_ = -1;

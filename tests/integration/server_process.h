@@ -33,6 +33,7 @@ class ServerProcess {
   void signal(int number) const;
   /// File descriptors that it has open.
   int openFiles() const;
+  bool isRunning() const;  ///< false too once it ended and was not waited for
   /// Waits for its end, at most a minute.
   FinishedProcess wait();
 

@@ -6,6 +6,7 @@
 
 #include "common/numerics/double_float.h"
 #include "tests/support/double_float_operands.h"
+#include "tests/support/sanitizers.h"
 
 namespace terrane::test {
 
@@ -14,11 +15,7 @@ using Limits = std::numeric_limits<float>;
 inline constexpr int kSamples = 100000;
 
 /// Sanitizers look for what is undefined, which a tenth finds too; how near the bounds come is for other builds.
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kSearchIsFull = false;
-#else
-inline constexpr bool kSearchIsFull = true;
-#endif
+inline constexpr bool kSearchIsFull = !kAddressSanitizer;
 /// For each operation; half of them close in on the worst of the other half.
 inline constexpr std::size_t kSearchSamples = kSearchIsFull ? 600000 : 60000;
 

@@ -25,15 +25,12 @@
 #include "tests/support/child_process.h"
 #include "tests/support/grounds.h"
 #include "tests/support/ico_points.h"
+#include "tests/support/sanitizers.h"
 
 namespace terrane {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr std::size_t kDefaultTiles = 30;
-#else
-constexpr std::size_t kDefaultTiles = 300;
-#endif
+constexpr std::size_t kDefaultTiles = test::kAddressSanitizer ? 30 : 300;
 
 constexpr unsigned kSeed = 48;
 

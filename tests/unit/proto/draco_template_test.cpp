@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "tests/support/sanitizers.h"
 #include "tests/unit/proto/kinds_of_data.h"
 #include "tests/unit/proto/sample_tile.h"
 
@@ -17,11 +18,7 @@ namespace {
 
 constexpr unsigned kSeed = 11;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kCells[] = {1, 2, 8, 64};
-#else
-constexpr int kCells[] = {1, 2, 8, 64, 128};
-#endif
+const std::vector<int> kCells = kAddressSanitizer ? std::vector{1, 2, 8, 64} : std::vector{1, 2, 8, 64, 128};
 
 TileMesh sampleMesh(int cells, bool skirts = true, bool colors = true) {
   return sampleTile({.cellsPerEdge = cells, .skirts = skirts, .colors = colors}).mesh;
