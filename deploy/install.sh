@@ -11,8 +11,8 @@ packages=(
   libspdlog-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libsqlite3-dev libxxhash-dev
   # software OpenGL and a virtual display, for machines without a GPU or a screen
   xvfb libgl1-mesa-dri libegl1 libgl1 xauth
-  # tests, sanitizers, fuzzing, benchmarks
-  libgtest-dev libgmock-dev libbenchmark-dev libmpfr-dev libqd-dev clang libclang-rt-14-dev clang-format clang-tidy
+  # tests, sanitizers (llvm: lines in their reports), fuzzing, benchmarks
+  libgtest-dev libgmock-dev libbenchmark-dev libmpfr-dev libqd-dev clang libclang-rt-14-dev llvm clang-format clang-tidy
   nginx-light wrk curl procps python3-minimal
 )
 

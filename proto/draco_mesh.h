@@ -28,8 +28,8 @@ enum class DracoNormals : std::uint8_t {
 };
 
 struct DracoSettings {
-  /// 0 (smallest) .. 10 (fastest). By a DracoTemplate 4 to 10 take the same time; by libdraco 4 takes 8 % more than 7,
-  /// for 11 % fewer bytes, which decode in the same time (bench_draco, bench_draco_decode). Above 7 tiles grow by a
+  /// 0 (smallest) .. 10 (fastest). 4 takes a tenth fewer bytes than 7; a DracoTemplate and a DracoReader take the same
+  /// time for both, libdraco a tenth more for 4, either way (bench_draco, bench_draco_decode). Above 7 tiles grow by a
   /// third.
   int speed = 4;
   int normalBits = 8;  ///< octahedral, 2..16

@@ -52,7 +52,7 @@ void FeatureGathering::start(const std::shared_ptr<const FeatureTables>& tables,
 GatheredFeatures FeatureGathering::near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
                                         const FeatureWants& wants) {
   if (!covers(*tables, points)) start(tables, points.ball);
-  return {runs(points, wants), wants.halos ? halos(wants.minWavelengthMeters) : std::span<const Halo>()};
+  return {runs(points, wants), wants.border ? std::span<const Halo>() : halos(wants.minWavelengthMeters)};
 }
 
 void FeatureGathering::gatherForBall(std::size_t count) {
@@ -66,7 +66,7 @@ std::span<const FeatureRun> FeatureGathering::runs(const PointSet& points, const
   const std::vector<FeatureLayer>& layers = tables_->layers;
   std::size_t count = 0;
   while (count < layers.size() && layers[count].longestWavelengthMeters() >= wants.minWavelengthMeters) ++count;
-  if (!wants.row) gatherForBall(count);
+  if (!wants.border) gatherForBall(count);
   runs_.clear();
   const auto add = [&](const std::vector<Feature>& from, std::size_t begin, std::size_t end,
                        const FeatureLayer& layer) {

@@ -24,10 +24,9 @@ struct FeatureTables {
 struct FeatureWants {
   double minWavelengthMeters;
   bool inDouble;  ///< large features are computed in double
-  bool halos;
-  /// The points are a row within what is gathered already, and the finest layers are asked for by few: only what is
-  /// near them is gathered, and not kept.
-  bool row;
+  /// The points are a row within what is gathered already, of which heights alone are asked for: no halos, and of the
+  /// finest layers, which few ask for, only what is near them, not kept.
+  bool border;
 };
 
 struct GatheredFeatures {

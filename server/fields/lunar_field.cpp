@@ -307,9 +307,8 @@ class LunarField::Evaluation {
   }
 
   void gather(const PointSet& points) {
-    const GatheredFeatures gathered =
-        scratch_.gathering.near(field_.features_, points,
-                                {minWavelength_, program_.reliefInDouble, !program_.heightsOnly, program_.heightsOnly});
+    const GatheredFeatures gathered = scratch_.gathering.near(
+        field_.features_, points, {minWavelength_, program_.reliefInDouble, program_.heightsOnly});
     program_.runs = gathered.runs.data();
     program_.runCount = gathered.runs.size();
     program_.halos = gathered.halos.data();
