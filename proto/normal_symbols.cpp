@@ -99,33 +99,42 @@ void predictVectors(const OctahedralGrid& grid, NormalScratch& scratch) {
   }
 }
 
+/// libdraco takes what is shorter than 1e-6 by its magnitudes' sum for +x.
+void replaceTiny(NormalScratch& scratch) {
+  for (std::size_t i = 0; i < scratch.x.size(); ++i) {
+    const double sum = std::abs(static_cast<double>(scratch.x[i])) + std::abs(static_cast<double>(scratch.y[i])) +
+                       std::abs(static_cast<double>(scratch.z[i]));
+    if (!(sum > 1e-6)) scratch.x[i] = 1, scratch.y[i] = scratch.z[i] = 0, scratch.negativeZ[i] = 0;
+  }
+}
+
 }  // namespace
 
 bool gatherNormals(std::span<const float> normals, const EntryOrder& order, NormalScratch& scratch) {
-  const std::size_t count = order.size();
+  const std::size_t count = order.size(), all = padded(count);
   for (auto* values : {&scratch.x, &scratch.y, &scratch.z}) {
-    values->resize(padded(count));
+    values->resize(all);
     std::fill(values->begin() + static_cast<std::ptrdiff_t>(count), values->end(), 1.0f);
   }
-  scratch.negativeZ.resize(padded(count));
+  scratch.negativeZ.resize(all);
   float *x = scratch.x.data(), *y = scratch.y.data(), *z = scratch.z.data();
-  std::int32_t* negativeZ = scratch.negativeZ.data();
-  bool sound = true;
   for (std::size_t i = 0; i < count; ++i) {
     const float* normal = &normals[3 * static_cast<std::size_t>(order.pointOfEntry[i])];
     x[i] = normal[0];
     y[i] = normal[1];
     z[i] = normal[2];
-    const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-    sound &= (squared > 1e-12f) & (squared < 1e12f);  // a NaN fails both
-    negativeZ[i] = z[i] < 0 ? -1 : 0;
-    if (squared < 4e-12f) [[unlikely]] {  // libdraco takes what is shorter than 1e-6 by its magnitudes' sum for +x
-      const double sum = std::abs(static_cast<double>(x[i])) + std::abs(static_cast<double>(y[i])) +
-                         std::abs(static_cast<double>(z[i]));
-      if (!(sum > 1e-6)) x[i] = 1, y[i] = z[i] = 0, negativeZ[i] = 0;
-    }
   }
-  return sound;
+  std::int32_t* negativeZ = scratch.negativeZ.data();
+  std::int32_t unsound = 0, tiny = 0;
+  for (std::size_t i = 0; i < all; ++i) {
+    const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+    unsound |= (squared > 1e-12f ? 0 : 1) | (squared < 1e12f ? 0 : 1);  // a NaN fails both
+    tiny |= squared < 4e-12f ? 1 : 0;
+    negativeZ[i] = z[i] < 0 ? -1 : 0;
+  }
+  if (tiny != 0) [[unlikely]]
+    replaceTiny(scratch);
+  return unsound == 0;
 }
 
 void differenceSymbols(int bits, const EntryOrder& order, NormalScratch& scratch, std::vector<std::uint32_t>& symbols) {

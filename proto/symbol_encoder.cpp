@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kMaxRawBits = 18;
 constexpr int kMaxSymbolBits = 31;  ///< libdraco counts bit lengths in a table of 32
+/// Symbols below it are counted by counters for each turn; 16 KB of them.
+constexpr std::uint32_t kFrequentSymbols = 1024;
 
 /// Of a symbol or value, which takes at least one.
 std::uint32_t bitLength(std::uint32_t symbol) noexcept {
@@ -36,6 +38,35 @@ int bitsOfLevel(int compressionLevel) noexcept {
   return compressionLevel > 7 ? 1 : 0;
 }
 
+/// bitLength of a number below 2^31 that is not zero, in operations that compilers make vector instructions of: the
+/// exponent of the number as a float, without the bit that might round it up to the next.
+std::uint32_t lengthByExponent(std::uint32_t number) noexcept {
+  constexpr std::uint32_t kFractionBits = 23, kExponentOfHalf = 126;
+  const auto rounded = static_cast<float>(static_cast<std::int32_t>(number & ~(number >> 1)));
+  return (std::bit_cast<std::uint32_t>(rounded) >> kFractionBits) - kExponentOfHalf;
+}
+
+/// Calls call(count), with the usual counts as constants of the compiler's.
+template <class Do>
+void withConstant(std::size_t count, Do&& call) {
+  if (count == 3)
+    call(std::integral_constant<std::size_t, 3>());
+  else if (count == 2)
+    call(std::integral_constant<std::size_t, 2>());
+  else
+    call(count);
+}
+
+/// Calls count(symbol, turn), turn from 0 to kTurns - 1 and again: a counter that the symbol before has just stored is
+/// slow to read, so that equal symbols in a row should have several.
+template <std::size_t kTurns, class Count>
+void countInTurn(std::span<const std::uint32_t> symbols, Count&& count) {
+  std::size_t i = 0;
+  for (; i + kTurns <= symbols.size(); i += kTurns)
+    for (std::size_t turn = 0; turn < kTurns; ++turn) count(symbols[i + turn], turn);
+  for (; i < symbols.size(); ++i) count(symbols[i], 0);
+}
+
 }  // namespace
 
 void SymbolEncoder::Alphabet::forget() {
@@ -45,25 +76,21 @@ void SymbolEncoder::Alphabet::forget() {
 }
 
 /// Fills lengths_. Returns all symbols' bits together.
-std::uint32_t SymbolEncoder::measureValues(std::size_t components) {
-  const std::size_t values = symbols_.size() / components;
+std::uint32_t SymbolEncoder::measureValues() {
+  const std::size_t values = symbols_.size() / components_;
   lengths_.resize(values);
+  std::uint32_t* length = lengths_.data();
   std::uint32_t all = 0;
-  const auto measure = [&](auto perValue) {
+  withConstant(components_, [&](auto perValue) {
     const std::uint32_t* symbol = symbols_.data();
     for (std::size_t i = 0; i < values; ++i) {
       std::uint32_t joined = 1;
       for (std::size_t c = 0; c < perValue; ++c) joined |= *symbol++;
-      lengths_[i] = bitLength(joined);
+      length[i] = joined;
       all |= joined;
     }
-  };
-  if (components == 3)
-    measure(std::integral_constant<std::size_t, 3>());
-  else if (components == 2)
-    measure(std::integral_constant<std::size_t, 2>());
-  else
-    measure(components);
+  });
+  for (std::size_t i = 0; i < values; ++i) length[i] = lengthByExponent(length[i]);
   return all;
 }
 
@@ -71,12 +98,9 @@ void SymbolEncoder::countLengths() {
   Alphabet& alphabet = lengthAlphabet_;
   alphabet.forget();
   alphabet.ofSymbol.resize(kMaxSymbolBits + 1);
-  for (const std::uint32_t length : lengths_) ++alphabet.ofSymbol[length];
-  for (std::uint32_t length = 1; length <= kMaxSymbolBits; ++length) {
-    if (alphabet.ofSymbol[length] == 0) continue;
-    alphabet.symbols.push_back(length);
-    alphabet.frequencies.push_back(alphabet.ofSymbol[length]);
-  }
+  counters_.assign(kMaxSymbolBits + 1, {});
+  countInTurn<kTurns>(lengths_, [&](std::uint32_t length, std::size_t turn) { ++counters_[length][turn]; });
+  listCounted(alphabet);
 }
 
 /// joined: all symbols' bits together, so that none is greater.
@@ -84,25 +108,45 @@ void SymbolEncoder::countSymbols(std::uint32_t joined) {
   Alphabet& alphabet = symbolAlphabet_;
   alphabet.forget();
   alphabet.ofSymbol.resize(std::max<std::size_t>(alphabet.ofSymbol.size(), joined + 1));
-  // Found in the order of their first coming, marked, and listed in their own order.
-  alphabet.symbols.resize(std::min<std::size_t>(symbols_.size(), joined + 1) + 1);
+  counters_.assign(std::min(joined + 1, kFrequentSymbols), {});
+  // The others are found in the order of their first coming, marked, and listed in their own order.
+  rare_.resize(std::min<std::size_t>(symbols_.size(), joined + 1) + 1);
   std::size_t distinct = 0;
-  for (const std::uint32_t symbol : symbols_) {
-    alphabet.symbols[distinct] = symbol;
-    distinct += alphabet.ofSymbol[symbol]++ == 0 ? 1 : 0;
-  }
+  std::uint32_t* ofSymbol = alphabet.ofSymbol.data();
+  countInTurn<kTurns>(symbols_,
+                      [&, counters = counters_.data(), rare = rare_.data()](std::uint32_t symbol, std::size_t turn) {
+                        if (symbol < kFrequentSymbols) {
+                          ++counters[symbol][turn];
+                        } else {
+                          rare[distinct] = symbol;
+                          distinct += ofSymbol[symbol]++ == 0 ? 1 : 0;
+                        }
+                      });
+  listCounted(alphabet);
   marks_.assign(joined / 64 + 1, 0);
-  for (std::size_t i = 0; i < distinct; ++i)
-    marks_[alphabet.symbols[i] / 64] |= std::uint64_t{1} << (alphabet.symbols[i] % 64);
-  alphabet.symbols.clear();
-  alphabet.frequencies.clear();
-  for (std::uint32_t word = 0; word < marks_.size(); ++word) {
+  for (std::size_t i = 0; i < distinct; ++i) marks_[rare_[i] / 64] |= std::uint64_t{1} << (rare_[i] % 64);
+  for (std::uint32_t word = kFrequentSymbols / 64; word < marks_.size(); ++word) {
     for (std::uint64_t marks = marks_[word]; marks != 0; marks &= marks - 1) {
       const std::uint32_t symbol = 64 * word + static_cast<std::uint32_t>(std::countr_zero(marks));
       alphabet.symbols.push_back(symbol);
-      alphabet.frequencies.push_back(alphabet.ofSymbol[symbol]);
+      alphabet.frequencies.push_back(ofSymbol[symbol]);
     }
   }
+}
+
+/// What counters_ have of the lowest symbols.
+void SymbolEncoder::listCounted(Alphabet& alphabet) const {
+  alphabet.symbols.resize(counters_.size());
+  alphabet.frequencies.resize(counters_.size());
+  std::size_t distinct = 0;
+  for (std::uint32_t symbol = 0; symbol < counters_.size(); ++symbol) {
+    const std::array<std::uint32_t, kTurns>& counts = counters_[symbol];
+    alphabet.symbols[distinct] = symbol;
+    alphabet.frequencies[distinct] = (counts[0] + counts[1]) + (counts[2] + counts[3]);
+    distinct += alphabet.frequencies[distinct] != 0 ? 1 : 0;
+  }
+  alphabet.symbols.resize(distinct);
+  alphabet.frequencies.resize(distinct);
 }
 
 void SymbolEncoder::makeTable(Alphabet& alphabet, std::uint32_t total, int precisionBits) {
@@ -129,7 +173,7 @@ bool SymbolEncoder::begin(std::span<const std::uint32_t> symbols, int components
   stream_.symbols = {};
   if (symbols.size() % components_ != 0 || symbols.size() > kMaxCodedSymbols) return false;
   if (symbols.empty()) return true;
-  const std::uint32_t joined = measureValues(components_);
+  const std::uint32_t joined = measureValues();
   if (bitLength(joined) > kMaxSymbolBits) return false;
   countLengths();
   tagged_ = bitLength(joined) > kMaxRawBits;
@@ -185,17 +229,28 @@ void SymbolEncoder::appendBits(std::vector<std::uint8_t>& out) const {
   std::uint8_t* to = out.data() + begin;
   std::uint64_t pending = 0;
   std::uint32_t count = 0;
-  const std::uint32_t* symbol = symbols_.data();
-  for (const std::uint32_t length : lengths_) {
-    for (std::size_t c = 0; c < components_; ++c) {
-      pending |= static_cast<std::uint64_t>(*symbol++) << count;
-      count += length;
-      putLittleEndian(to, pending);  // of which whole bytes stay
-      to += count / 8;
-      pending >>= count / 8 * 8;
-      count %= 8;
+  const auto put = [&](std::uint64_t added, std::uint32_t addedBits) {
+    pending |= added << count;
+    count += addedBits;
+    putLittleEndian(to, pending);  // of which whole bytes stay
+    to += count / 8;
+    pending >>= count / 8 * 8;
+    count %= 8;
+  };
+  withConstant(components_, [&](auto perValue) {
+    constexpr std::uint32_t kMostAtOnce = 56;
+    const std::uint32_t* symbol = symbols_.data();
+    for (const std::uint32_t length : lengths_) {
+      if (perValue * length <= kMostAtOnce) [[likely]] {
+        std::uint64_t value = 0;
+        for (std::size_t c = 0; c < perValue; ++c) value |= static_cast<std::uint64_t>(symbol[c]) << (c * length);
+        put(value, static_cast<std::uint32_t>(perValue * length));
+      } else {
+        for (std::size_t c = 0; c < perValue; ++c) put(symbol[c], length);
+      }
+      symbol += perValue;
     }
-  }
+  });
   out.resize(begin + byteCount);
 }
 

@@ -4,6 +4,7 @@
 // then the bits (tagged), whichever libdraco takes for shorter. Private to proto. Keeps its memory between uses; an
 // object belongs to one thread.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,16 +29,19 @@ class SymbolEncoder {
   bool tagged() const noexcept { return tagged_; }
 
  private:
+  static constexpr std::size_t kTurns = 4;  ///< counters of a symbol, used in turn
+
   /// The symbols of an alphabet that come, in their order, and how often.
   struct Alphabet {
-    std::vector<std::uint32_t> ofSymbol;  ///< frequency of each symbol, later its rank; 0 between uses
+    std::vector<std::uint32_t> ofSymbol;  ///< rank of each symbol, before that a rare one's frequency; 0 between uses
     std::vector<std::uint32_t> symbols, frequencies;
     void forget();
   };
 
-  std::uint32_t measureValues(std::size_t components);
+  std::uint32_t measureValues();
   void countLengths();
-  void countSymbols(std::uint32_t greatest);
+  void countSymbols(std::uint32_t joined);
+  void listCounted(Alphabet& alphabet) const;
   void makeTable(Alphabet& alphabet, std::uint32_t total, int precisionBits);
   void appendTable(std::vector<std::uint8_t>& out) const;
   void appendBits(std::vector<std::uint8_t>& out) const;
@@ -48,7 +52,9 @@ class SymbolEncoder {
   std::uint8_t rawBits_ = 0;            ///< which libdraco writes before raw symbols
   std::vector<std::uint32_t> lengths_;  ///< of each value, in bits
   Alphabet lengthAlphabet_, symbolAlphabet_;
-  Alphabet* coded_ = nullptr;  ///< the one of the stream
+  Alphabet* coded_ = nullptr;                                ///< the one of the stream
+  std::vector<std::array<std::uint32_t, kTurns>> counters_;  ///< of the lowest symbols
+  std::vector<std::uint32_t> rare_;                          ///< the others that come
   std::vector<std::uint64_t> marks_;
   std::vector<std::uint32_t> probabilities_;
   std::vector<RansSymbol> table_;

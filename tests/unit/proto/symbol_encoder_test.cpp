@@ -2,6 +2,8 @@
 
 #include "proto/symbol_encoder.h"
 
+#include <draco/compression/config/compression_shared.h>
+#include <draco/compression/entropy/symbol_decoding.h>
 #include <draco/compression/entropy/symbol_encoding.h>
 #include <gtest/gtest.h>
 
@@ -79,7 +81,7 @@ TEST(SymbolEncoder, GivesTheBytesOfLibdraco) {
   for (const std::size_t values : {1, 2, 3, 5, 64, 900, 4485, 23'400}) {
     for (const int components : {1, 2, 3, 4}) {
       for (const Kind& kind : kKinds) {
-        for (const int bits : {0, 1, 3, 8, 13, 17, 18, 19, 20}) {
+        for (const int bits : {0, 1, 3, 8, 10, 11, 13, 17, 18, 19, 20}) {
           Symbols symbols(values * static_cast<std::size_t>(components));
           for (std::size_t i = 0; i < symbols.size(); ++i)
             symbols[i] = kind.draw(random, i, static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1));
@@ -103,6 +105,29 @@ TEST(SymbolEncoder, GivesTheBytesOfLibdracoAtEveryLevel) {
       for (auto& symbol : symbols) symbol = (1u << bits) >> (random() % 5) ^ static_cast<std::uint32_t>(random() % 3);
       EXPECT_TRUE(sameBytes(symbols, 3, level, ways)) << "level " << level << ", " << bits << " bits";
     }
+}
+
+/// Around all powers of two: as many components as fill a value with the longest, and fewer. libdraco's encoder counts
+/// in a table of every symbol up to the greatest, so that the longest can only be read back.
+TEST(SymbolEncoder, MeasuresSymbolsOfEveryLength) {
+  Ways ways;
+  for (const int components : {1, 2, 3}) {
+    for (const unsigned longest : {25u, 31u}) {
+      Symbols symbols;
+      for (unsigned bits = 0; bits < longest; ++bits)
+        for (const std::uint32_t symbol : {(1u << bits) - 1, 1u << bits, (1u << bits) + ((1u << bits) - 1)})
+          for (int c = 0; c < components; ++c) symbols.push_back(symbol);
+      EXPECT_TRUE(longest > 25 || sameBytes(symbols, components, 3, ways)) << components;
+      std::vector<std::uint8_t> bytes;
+      ASSERT_TRUE(encodeSymbols(symbols, components, 3, bytes));
+      draco::DecoderBuffer buffer;
+      buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      buffer.set_bitstream_version(DRACO_BITSTREAM_VERSION(2, 2));
+      Symbols read(symbols.size());
+      ASSERT_TRUE(draco::DecodeSymbols(static_cast<std::uint32_t>(symbols.size()), components, &buffer, read.data()));
+      EXPECT_EQ(read, symbols) << components;
+    }
+  }
 }
 
 /// Where the two ways of writing take nearly the same: many small arrays, of which some lie within a bit.
