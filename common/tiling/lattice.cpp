@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/numerics/strict_math.h"
+#include "common/numerics/power_of_two.h"
 #include "common/tiling/icosahedron.h"
 
 namespace terrane {
@@ -12,14 +12,7 @@ namespace {
 
 constexpr double kHalfPi = 1.5707963267948966;
 
-/// Nearest integer, halves up. floor(x + 0.5) is wrong for 0.5 - 2^-54 and others, since the sum rounds; the difference
-/// below decides rightly for every x, by the monotony of rounding.
-/// Through an integer, because std::floor is a call on the oldest x86-64.
-std::int64_t roundHalfUp(double x) noexcept {
-  const auto towardsZero = static_cast<std::int64_t>(x);
-  const std::int64_t lower = towardsZero - (static_cast<double>(towardsZero) > x ? 1 : 0);
-  return lower + (x - static_cast<double>(lower) >= 0.5 ? 1 : 0);
-}
+std::int64_t latticeCoordinate(double steps) noexcept { return static_cast<std::int64_t>(roundedHalfUp(steps)); }
 
 }  // namespace
 
@@ -35,14 +28,7 @@ int stepExponent(double radiusMeters, int level, Scheme scheme) noexcept {
   return (fraction > 0.5 ? exponent : exponent - 1) - 15;
 }
 
-double stepMeters(int stepExponent) noexcept {
-  // A normal number's bits, since ldexp is a call that rounding to the lattice would make for each vertex.
-  constexpr int kLeast = std::numeric_limits<double>::min_exponent - 1,
-                kMost = std::numeric_limits<double>::max_exponent - 1;
-  if (stepExponent < kLeast || stepExponent > kMost) return std::ldexp(1.0, stepExponent);
-  constexpr int kBias = kMost, kFractionBits = std::numeric_limits<double>::digits - 1;
-  return std::bit_cast<double>(static_cast<std::uint64_t>(stepExponent + kBias) << kFractionBits);
-}
+double stepMeters(int stepExponent) noexcept { return powerOfTwo(stepExponent); }
 
 int maxLevel(double radiusMeters, Scheme scheme) noexcept {
   int level = FacePath::kMaxLevel;
@@ -52,8 +38,9 @@ int maxLevel(double radiusMeters, Scheme scheme) noexcept {
 
 LatticePoint roundToLattice(const glm::dvec3& positionBody, int stepExponent) noexcept {
   const double stepsPerMeter = stepMeters(-stepExponent);
-  return LatticePoint(roundHalfUp(positionBody.x * stepsPerMeter), roundHalfUp(positionBody.y * stepsPerMeter),
-                      roundHalfUp(positionBody.z * stepsPerMeter));
+  return LatticePoint(latticeCoordinate(positionBody.x * stepsPerMeter),
+                      latticeCoordinate(positionBody.y * stepsPerMeter),
+                      latticeCoordinate(positionBody.z * stepsPerMeter));
 }
 
 glm::dvec3 latticePosition(const LatticePoint& point, int stepExponent) noexcept {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 
+#include "common/numerics/strict_math.h"
 #include "common/tiling/face_path.h"
 
 namespace terrane {
@@ -32,6 +33,15 @@ double stepMeters(int stepExponent) noexcept;
 
 /// The finest level whose step is >= 2^kMinStepExponent metres, at most FacePath::kMaxLevel.
 int maxLevel(double radiusMeters, Scheme scheme = Scheme::Cube) noexcept;
+
+/// Nearest whole number, halves up. Precondition: |x| < 2^51. Inline and without an integer or a branch, so that loops
+/// become vector instructions even on the oldest x86-64.
+inline double roundedHalfUp(double x) noexcept {
+  constexpr double kWhole = 6755399441055744.0;  // 1.5 x 2^52: a sum with it is whole, rounded to the nearest
+  const double nearest = (x + kWhole) - kWhole;
+  // The difference is exact. It is a half where a half went down, to the even neighbour.
+  return nearest + (x - nearest >= 0.5 ? 1.0 : 0.0);
+}
 
 /// Nearest lattice point, halves up. Precondition: |position| / step < 2^51.
 LatticePoint roundToLattice(const glm::dvec3& positionBody, int stepExponent) noexcept;

@@ -1,5 +1,6 @@
 #include "server/build/grid_directions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -11,7 +12,7 @@
 namespace terrane {
 namespace {
 
-/// tan(s pi/4) on the cells + 1 grid lines of a tile that starts at `first`, in units of 2^-gridLevel of a face.
+/// tan(s pi/4) on the cells + 1 grid lines from `first` on, in units of 2^-gridLevel of a face.
 void lineTangents(std::uint64_t first, int cellsPerEdge, int gridLevel, std::vector<double>& out) {
   const double scale = std::ldexp(1.0, -gridLevel);
   const std::int64_t half = std::int64_t{1} << gridLevel;
@@ -40,6 +41,23 @@ DirectionSpans lastOf(GridDirections& directions, std::size_t count) {
           std::span(directions.z).last(count)};
 }
 
+struct CubeLines {
+  const FaceAxes& axes;
+  DirectionSpans out;
+
+  /// The operations of cubeDirection, in its order: the bits of a shared vertex must not depend on the face it is
+  /// computed from.
+  void direct(std::size_t vertex, double tangentU, double tangentV) const {
+    const double px = (axes.normal.x + axes.u.x * tangentU) + axes.v.x * tangentV;
+    const double py = (axes.normal.y + axes.u.y * tangentU) + axes.v.y * tangentV;
+    const double pz = (axes.normal.z + axes.u.z * tangentU) + axes.v.z * tangentV;
+    const double norm = std::sqrt((px * px + py * py) + pz * pz);
+    out.x[vertex] = px / norm;
+    out.y[vertex] = py / norm;
+    out.z[vertex] = pz / norm;
+  }
+};
+
 /// Two tangents for each line of the grid serve all its vertices.
 void cubeGridDirections(const FacePath& path, int cellsPerEdge, GridDirections& out) {
   thread_local std::vector<double> tangentsU, tangentsV;
@@ -47,42 +65,26 @@ void cubeGridDirections(const FacePath& path, int cellsPerEdge, GridDirections& 
   const auto cells = static_cast<std::uint64_t>(cellsPerEdge);
   lineTangents(path.column() * cells, cellsPerEdge, gridLevel, tangentsU);
   lineTangents(path.row() * cells, cellsPerEdge, gridLevel, tangentsV);
-
   const std::size_t side = tangentsU.size();
   resize(out, side * side);
-  const FaceAxes axes = cubeFaceAxes(path.face());
-  const double* alongU = tangentsU.data();
-  for (std::size_t j = 0; j < side; ++j) {
-    // The operations of cubeDirection, in its order: the bits of a shared vertex must not depend on the face it is
-    // computed from.
-    const glm::dvec3 ofRow = axes.v * tangentsV[j];
-    double *x = out.x.data() + j * side, *y = out.y.data() + j * side, *z = out.z.data() + j * side;
-    for (std::size_t i = 0; i < side; ++i) {
-      const double a = alongU[i];
-      const double px = (axes.normal.x + axes.u.x * a) + ofRow.x;
-      const double py = (axes.normal.y + axes.u.y * a) + ofRow.y;
-      const double pz = (axes.normal.z + axes.u.z * a) + ofRow.z;
-      const double norm = std::sqrt((px * px + py * py) + pz * pz);
-      x[i] = px / norm;
-      y[i] = py / norm;
-      z[i] = pz / norm;
-    }
-  }
+  const CubeLines lines{cubeFaceAxes(path.face()), lastOf(out, side * side)};
+  for (std::size_t j = 0; j < side; ++j)
+    for (std::size_t i = 0; i < side; ++i) lines.direct(j * side + i, tangentsU[i], tangentsV[j]);
 }
 
 /// VMin towards +u, UMax towards +v, VMax towards -u, UMin towards -v.
 void appendCubeEdge(const FacePath& path, int skirtEdge, int cellsPerEdge, GridDirections& out) {
+  thread_local std::vector<double> along, beside;
   const int gridLevel = path.level() + levelsOf(cellsPerEdge);
-  const auto last = static_cast<std::uint64_t>(cellsPerEdge);
-  for (std::uint64_t k = 0; k <= last; ++k) {
-    const std::uint64_t u = skirtEdge == 0 ? k : skirtEdge == 1 ? last : skirtEdge == 2 ? last - k : 0;
-    const std::uint64_t v = skirtEdge == 0 ? 0 : skirtEdge == 1 ? k : skirtEdge == 2 ? last : last - k;
-    const glm::dvec3 direction =
-        cubeGridDirection(path.face(), gridLevel, path.column() * last + u, path.row() * last + v);
-    out.x.push_back(direction.x);
-    out.y.push_back(direction.y);
-    out.z.push_back(direction.z);
-  }
+  const auto cells = static_cast<std::uint64_t>(cellsPerEdge);
+  const bool alongU = skirtEdge % 2 == 0, atFarSide = skirtEdge == 1 || skirtEdge == 2;
+  lineTangents((alongU ? path.column() : path.row()) * cells, cellsPerEdge, gridLevel, along);
+  lineTangents((alongU ? path.row() : path.column()) * cells + (atFarSide ? cells : 0), 0, gridLevel, beside);
+  if (skirtEdge >= 2) std::reverse(along.begin(), along.end());
+  resize(out, out.x.size() + along.size());
+  const CubeLines lines{cubeFaceAxes(path.face()), lastOf(out, along.size())};
+  for (std::size_t k = 0; k < along.size(); ++k)
+    lines.direct(k, alongU ? along[k] : beside[0], alongU ? beside[0] : along[k]);
 }
 
 }  // namespace

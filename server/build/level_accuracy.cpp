@@ -23,7 +23,7 @@ double sagMeters(double cell, double lowestRadius, double heightSpan) noexcept {
 }  // namespace
 
 double skirtMarginMeters(double radiusMeters, int level, Scheme scheme) noexcept {
-  return (3.0 * 0.8660254037844387 + skirtCornerFlareSteps(scheme)) *
+  return (3.0 * 0.8660254037844387 + 4.0 * kToleranceSteps + skirtCornerFlareSteps(scheme)) *
          stepMeters(stepExponent(radiusMeters, level, scheme));
 }
 
@@ -38,6 +38,7 @@ std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radi
     const double cell = cellMeters(level);
     LevelAccuracy accuracy;
     accuracy.minWavelengthMeters = 2.0 * cell;
+    accuracy.toleranceMeters = kToleranceSteps * stepMeters(stepExponent(radiusMeters, level, scheme));
     accuracy.geometricErrorMeters = kErrorPerCell * cell;
     accuracy.skirtSlackMeters = skirtMarginMeters(radiusMeters, level, scheme) +
                                 sagMeters(longestEdge(scheme) * cell, radiusMeters + heights.minMeters, span);
@@ -46,8 +47,9 @@ std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radi
       // vertices it lies between, which is the half diagonal's at most, s^2 / 2, and the squared circumradius of an
       // acute triangle, (1.2 s)^2 / 3. No two heights differ by more than the field's whole range: at the coarsest
       // levels that is the better bound.
-      accuracy.subtreeSlackMeters = std::min(
-          span, field.omittedAmplitudeMeters(2.0 * cell, finest) + field.interpolationErrorMeters(2.0 * cell, cell));
+      accuracy.subtreeSlackMeters =
+          std::min(span, 2.0 * accuracy.toleranceMeters + field.omittedAmplitudeMeters(2.0 * cell, finest) +
+                             field.interpolationErrorMeters(2.0 * cell, cell));
     }
     levels.push_back(accuracy);
   }

@@ -65,6 +65,7 @@ class SkirtBuilder {
       const int cells = static_cast<int>(samplesPerEdge) - 1;
       SampleBatch batch{d.x.data() + at, d.y.data() + at, d.z.data() + at, 1, samplesPerEdge};
       batch.grid = GridPlace{tile_.path, cells, static_cast<int>(edge)};
+      batch.toleranceMeters = tile_.levels[static_cast<std::size_t>(tile_.path.level())].toleranceMeters;
       tile_.field.evaluate(batch, tile_.levels[static_cast<std::size_t>(level)].minWavelengthMeters, scratch_.samples);
       scratch_.heightMeters.insert(scratch_.heightMeters.end(), scratch_.samples.heightMeters.begin(),
                                    scratch_.samples.heightMeters.end());

@@ -1,7 +1,6 @@
 #include "server/build/tile_builder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <span>
 #include <utility>
@@ -9,12 +8,12 @@
 #include "common/numerics/strict_math.h"
 #include "proto/draco_template.h"
 #include "proto/gltf_tile.h"
-#include "server/build/edge_planes.h"
 #include "server/build/grid_directions.h"
 #include "server/build/level_accuracy.h"
 #include "server/build/skirt.h"
 #include "server/build/tile_revision.h"
 #include "server/build/tile_topology.h"
+#include "server/build/tile_vertices.h"
 
 namespace terrane {
 namespace {
@@ -31,7 +30,7 @@ struct BuildScratch {
   SurfaceSamples samples;
   SkirtScratch skirt;
   std::vector<double> skirtHeights;
-  std::vector<LatticePoint> lattice;  ///< of all vertices, skirts included
+  LatticeCoordinates lattice;
   Tile tile;
   DracoBuffer draco;
 };
@@ -70,85 +69,6 @@ class ScratchPool {
   std::mutex mutex_;
   std::vector<std::unique_ptr<BuildScratch>> free_;
 };
-
-HeightRange rangeOf(const std::vector<double>& heights) {
-  const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
-  return {*lowest, *highest};
-}
-
-/// Where the grid's vertices and the skirts below them fall on the lattice. Skirts lean outwards (kSkirtFlareSteps).
-void placeVertices(const FacePath& path, const BuildScratch& memory, const TileTopology& topology, double radiusMeters,
-                   int exponent, std::vector<LatticePoint>& out) {
-  const GridDirections& at = memory.directions;
-  const auto position = [&](std::size_t vertex, double height) {
-    const double radius = radiusMeters + height;
-    return glm::dvec3{at.x[vertex] * radius, at.y[vertex] * radius, at.z[vertex] * radius};
-  };
-  const std::vector<double>& heights = memory.samples.heightMeters;
-  out.clear();
-  for (std::size_t vertex = 0; vertex < heights.size(); ++vertex)
-    out.push_back(roundToLattice(position(vertex, heights[vertex]), exponent));
-  const EdgeNormals outward(path);
-  const double flare = kSkirtFlareSteps * stepMeters(exponent);
-  const auto perEdge = static_cast<std::size_t>(topology.cellsPerEdge) + 1;
-  for (std::size_t k = 0; k < topology.skirtAnchors.size(); ++k) {
-    const glm::dvec3 below = position(topology.skirtAnchors[k], memory.skirtHeights[k]);
-    out.push_back(roundToLattice(below + outward.lean(k / perEdge, k % perEdge, perEdge - 1) * flare, exponent));
-  }
-}
-
-/// Offsets from the componentwise smallest point, which becomes the origin. False if one does not fit into 16 bits.
-bool offsetsFromOrigin(const std::vector<LatticePoint>& lattice, LatticePoint& origin,
-                       std::vector<std::uint16_t>& offsets) {
-  LatticePoint lowest = lattice.front(), highest = lowest;
-  for (const LatticePoint& p : lattice) {
-    for (int axis = 0; axis < 3; ++axis) {
-      lowest[axis] = std::min(lowest[axis], p[axis]);
-      highest[axis] = std::max(highest[axis], p[axis]);
-    }
-  }
-  for (int axis = 0; axis < 3; ++axis)
-    if (highest[axis] - lowest[axis] > kTileOffsetMax) return false;
-  origin = lowest;
-  offsets.resize(3 * lattice.size());
-  for (std::size_t i = 0; i < lattice.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      offsets[3 * i + static_cast<std::size_t>(axis)] = static_cast<std::uint16_t>(lattice[i][axis] - lowest[axis]);
-  return true;
-}
-
-/// Normal of the surface (R + h) d, whose tangents are those of the sphere lifted by the gradient g at radius R: (1 +
-/// h/R) d - g.
-void writeNormals(const GridDirections& at, const SurfaceSamples& samples, double radiusMeters,
-                  std::vector<float>& out) {
-  const std::size_t count = samples.heightMeters.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const double radial = 1.0 + samples.heightMeters[i] / radiusMeters;
-    const double x = at.x[i] * radial - static_cast<double>(samples.gradientX[i]);
-    const double y = at.y[i] * radial - static_cast<double>(samples.gradientY[i]);
-    const double z = at.z[i] * radial - static_cast<double>(samples.gradientZ[i]);
-    const double norm = std::sqrt((x * x + y * y) + z * z);
-    out[3 * i] = static_cast<float>(x / norm);
-    out[3 * i + 1] = static_cast<float>(y / norm);
-    out[3 * i + 2] = static_cast<float>(z / norm);
-  }
-}
-
-void writeColors(const std::vector<float>& reflectance, std::vector<std::uint8_t>& out) {
-  for (std::size_t i = 0; i < reflectance.size(); ++i) {
-    const float scaled = std::floor(reflectance[i] * (255.0f / kColorScale) + 0.5f);
-    const auto grey = static_cast<std::uint8_t>(std::clamp(scaled, 0.0f, 255.0f));
-    out[3 * i] = out[3 * i + 1] = out[3 * i + 2] = grey;
-  }
-}
-
-/// A skirt vertex looks like the edge vertex it hangs from.
-template <class T>
-void copyToSkirts(const TileTopology& topology, std::vector<T>& values) {
-  std::size_t skirt = 3 * topology.gridVertexCount();
-  for (const std::uint32_t anchor : topology.skirtAnchors)
-    for (std::size_t axis = 0; axis < 3; ++axis) values[skirt++] = values[3 * static_cast<std::size_t>(anchor) + axis];
-}
 
 }  // namespace
 
@@ -242,16 +162,16 @@ Result<void> TileBuilder::State::checkPath(const FacePath& path) const {
 
 void TileBuilder::State::describe(const FacePath& path, const BuildScratch& memory, TileMetadata& metadata) const {
   const LevelAccuracy& accuracy = levels[static_cast<std::size_t>(path.level())];
-  const HeightRange terrain = rangeOf(memory.samples.heightMeters);
-  metadata.heights = {std::min(terrain.minMeters, rangeOf(memory.skirtHeights).minMeters), terrain.maxMeters};
+  const NumberRange terrain = rangeOf(memory.samples.heightMeters);
+  metadata.heights = {std::min(terrain.least, rangeOf(memory.skirtHeights).least), terrain.greatest};
   double deepest = 0;
   for (std::size_t k = 0; k < memory.skirtHeights.size(); ++k)
     deepest = std::max(deepest, memory.samples.heightMeters[topology->skirtAnchors[k]] - memory.skirtHeights[k]);
 
   // Of descendants: no terrain leaves the slack, nor what the field can give at all; a finer tile's skirts reach below
   // terrain of its own level and the two beside it, none of them coarser than this tile's.
-  const double lowest = std::max(terrain.minMeters - accuracy.subtreeSlackMeters, fieldHeights.minMeters);
-  const double highest = std::min(terrain.maxMeters + accuracy.subtreeSlackMeters, fieldHeights.maxMeters);
+  const double lowest = std::max(terrain.least - accuracy.subtreeSlackMeters, fieldHeights.minMeters);
+  const double highest = std::min(terrain.greatest + accuracy.subtreeSlackMeters, fieldHeights.maxMeters);
   metadata.subtreeHeights = {std::min(metadata.heights.minMeters, lowest - accuracy.skirtSlackMeters),
                              std::max(metadata.heights.maxMeters, highest)};
 
@@ -280,7 +200,8 @@ Result<void> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
                           memory.directions.x.size() / side,
                           side,
                           0.5 * accuracy.minWavelengthMeters,
-                          GridPlace{path, wire.cellsPerEdge}};
+                          GridPlace{path, wire.cellsPerEdge},
+                          accuracy.toleranceMeters};
   field->evaluate(batch, accuracy.minWavelengthMeters, memory.samples);
   memory.skirt.samples.scratch = memory.samples.scratch;  // what was gathered around the tile serves its borders too
   skirtHeights({*field, levels, *topology, radius, path, memory.directions, memory.samples.heightMeters}, memory.skirt,
@@ -291,21 +212,18 @@ Result<void> TileBuilder::State::buildMesh(const FacePath& path, BuildScratch& m
   Tile& tile = memory.tile;
   tile.metadata = {};
   tile.metadata.stepExponent = stepExponent(radius, path.level(), scheme);
-  placeVertices(path, memory, *topology, radius, tile.metadata.stepExponent, memory.lattice);
+  placeVertices({path, *topology, memory.directions, memory.samples.heightMeters, memory.skirtHeights, radius,
+                 tile.metadata.stepExponent},
+                memory.lattice);
   if (!offsetsFromOrigin(memory.lattice, tile.metadata.origin, tile.mesh.offsets))
     return makeError(ErrorKind::TooLarge, "digits",
                      path.text() + " of " + body.name + " is steeper than 16 bits of its lattice can hold");
-  const std::size_t vertices = topology->gridIndices.size();
-  tile.mesh.normals.resize(3 * vertices);
-  writeNormals(memory.directions, memory.samples, radius, tile.mesh.normals);
-  copyToSkirts(*topology, tile.mesh.normals);
-  if (!memory.samples.reflectance.empty()) {
-    tile.mesh.colors.resize(3 * vertices);
-    writeColors(memory.samples.reflectance, tile.mesh.colors);
-    copyToSkirts(*topology, tile.mesh.colors);
+  writeNormals(memory.directions, memory.samples, radius, *topology, tile.mesh.normals);
+  if (!memory.samples.reflectance.empty()) writeColors(memory.samples.reflectance, *topology, tile.mesh.colors);
+  if (tile.mesh.triangles.empty()) {  // all tiles that this memory is lent for have the same
+    tile.mesh.gridIndices = topology->gridIndices;
+    tile.mesh.triangles = topology->triangles;
   }
-  tile.mesh.gridIndices = topology->gridIndices;
-  tile.mesh.triangles = topology->triangles;
   describe(path, memory, tile.metadata);
   times.meshMs += millisecondsSince(meshStart);
   return {};

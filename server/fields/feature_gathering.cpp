@@ -8,8 +8,6 @@
 namespace terrane::lunar {
 namespace {
 
-/// Craters from 1 km up are computed in double at fine levels.
-constexpr int kDoubleExponent = 10;
 /// A ball is gathered a little larger than asked: a border's samples between the vertices bulge out of the tile's ball.
 constexpr double kSlack = 1.01;
 /// What was gathered for a ball this many times larger would rather be gathered anew: most of it would be out of reach.
@@ -68,11 +66,11 @@ std::span<const FeatureRun> FeatureGathering::runs(const PointSet& points, const
   while (count < layers.size() && layers[count].longestWavelengthMeters() >= wants.minWavelengthMeters) ++count;
   if (!wants.border) gatherForBall(count);
   runs_.clear();
+  const double doubleFrom = kDoubleRadii * wants.minWavelengthMeters;
   const auto add = [&](const std::vector<Feature>& from, std::size_t begin, std::size_t end,
                        const FeatureLayer& layer) {
     if (begin == end) return;
-    runs_.push_back(
-        {from.data() + begin, end - begin, layer.stage, wants.inDouble && layer.exponent >= kDoubleExponent});
+    runs_.push_back({from.data() + begin, end - begin, layer.stage, layer.wavelengthMeters() >= doubleFrom});
   };
   const std::size_t kept = std::min(count, layerEnds_.size());
   for (std::size_t i = 0, begin = 0; i < kept; begin = layerEnds_[i++]) add(features_, begin, layerEnds_[i], layers[i]);
@@ -87,9 +85,14 @@ std::span<const FeatureRun> FeatureGathering::runs(const PointSet& points, const
     for (std::size_t i = kept, begin = 0; i < count; begin = rowEnds_[i++ - kept])
       add(rowFeatures_, begin, rowEnds_[i - kept], layers[i]);
   }
-  std::size_t shown = 0;
-  while (shown < landmarks_.size() && landmarks_[shown].radius >= wants.minWavelengthMeters) ++shown;
-  if (shown > 0) runs_.push_back({landmarks_.data(), shown, FeatureStage::YoungCrater, wants.inDouble});
+  const auto landmarksFrom = [&](double radius) {
+    std::size_t n = 0;
+    while (n < landmarks_.size() && landmarks_[n].radius >= radius) ++n;
+    return n;
+  };
+  const std::size_t large = landmarksFrom(doubleFrom), shown = landmarksFrom(wants.minWavelengthMeters);
+  if (large > 0) runs_.push_back({landmarks_.data(), large, FeatureStage::YoungCrater, true});
+  if (shown > large) runs_.push_back({landmarks_.data() + large, shown - large, FeatureStage::YoungCrater, false});
   return runs_;
 }
 

@@ -23,7 +23,6 @@ struct FeatureTables {
 /// What a batch asks for.
 struct FeatureWants {
   double minWavelengthMeters;
-  bool inDouble;  ///< large features are computed in double
   /// The points are a row within what is gathered already, of which heights alone are asked for: no halos, and of the
   /// finest layers, which few ask for, only what is near them, not kept.
   bool border;

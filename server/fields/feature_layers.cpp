@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/numerics/power_of_two.h"
 #include "common/numerics/strict_math.h"
 #include "common/tiling/cube_sphere.h"
 
@@ -10,8 +11,6 @@ namespace terrane::lunar {
 namespace {
 
 /// 2^exponent, exactly.
-double powerOfTwo(int exponent) noexcept { return std::ldexp(1.0, exponent); }
-
 double interpolate(std::span<const double> table, double position) noexcept {
   const double last = static_cast<double>(table.size() - 1);
   const double clamped = std::clamp(position, 0.0, last);
@@ -120,16 +119,21 @@ Feature makeRock(const double direction[3], double bodyRadius, double diameter, 
   return f;
 }
 
-/// One cell along one axis of its face, and the squares of the tangents of its sides: the smallest and largest within.
+/// One cell along one axis of its face.
 struct CellSpan {
-  double start, width;
-  double least, most;
+  double start, width;           ///< face angles
+  double least = -1, most = -1;  ///< squares of the tangents within; few cells are asked for them
 };
 CellSpan cellSpan(const FeatureLayer& layer, std::uint32_t index) noexcept {
   const double width = 2.0 / static_cast<double>(layer.cellsPerFace);
-  const double a = width * static_cast<double>(index) - 1, b = a + width;
+  return {width * static_cast<double>(index) - 1, width};
+}
+void findTangents(CellSpan& span) noexcept {
+  if (span.least >= 0) return;
+  const double a = span.start, b = a + span.width;
   const double ta = tanQuarterPi(std::clamp(a, -1.0, 1.0)), tb = tanQuarterPi(std::clamp(b, -1.0, 1.0));
-  return {a, width, a * b <= 0 ? 0 : std::min(ta * ta, tb * tb), std::max(ta * ta, tb * tb)};
+  span.least = a * b <= 0 ? 0 : std::min(ta * ta, tb * tb);
+  span.most = std::max(ta * ta, tb * tb);
 }
 
 bool isOccupied(const FeatureLayer& layer, const Cell& cell, std::uint64_t hash) noexcept {
@@ -141,36 +145,44 @@ bool isOccupied(const FeatureLayer& layer, const Cell& cell, std::uint64_t hash)
 /// Where a cell's feature is and how large: all of it but its shape.
 struct Site {
   double direction[3];
-  double diameter = 0, reach = 0;
+  double diameter = 0;
   std::uint64_t hash = 0;
 };
 
+/// Cumulative N(> D) ~ D^-2 between D0 and 2 D0: D = D0 / sqrt(1 - 3/4 u).
+double diameterOf(const FeatureLayer& layer, std::uint64_t hash) noexcept {
+  return layer.smallestDiameter() / std::sqrt(1 - 0.75 * hashUnit(mixHash(hash ^ 7)));
+}
+
+/// The outline's widest.
+double bowlRadius(const FeatureLayer& layer, double diameter) noexcept {
+  return 0.5 * diameter / (1 - (layer.stage == FeatureStage::Rock ? kRockLobes : kCraterLobes));
+}
+
+constexpr double kFaceAngles = 4 / 3.14159265358979323846;  ///< to a radian
+
 /// False if the cell is too narrow for the feature.
-bool chooseSite(const FeatureLayer& layer, double bodyRadius, const Cell& cell, std::uint64_t hash, const CellSpan& s,
-                const CellSpan& t, Site& out) noexcept {
-  // Cumulative N(> D) ~ D^-2 between D0 and 2 D0: D = D0 / sqrt(1 - 3/4 u).
-  const double diameter = layer.smallestDiameter() / std::sqrt(1 - 0.75 * hashUnit(mixHash(hash ^ 7)));
-  const bool rock = layer.stage == FeatureStage::Rock;
-  const double bowl = 0.5 * diameter / (1 - (rock ? kRockLobes : kCraterLobes));
+bool placeSite(const FeatureLayer& layer, double bodyRadius, const Cell& cell, CellSpan& s, CellSpan& t,
+               Site& out) noexcept {
+  findTangents(s);
+  findTangents(t);
+  const double bowl = bowlRadius(layer, out.diameter);
   // Margin to the cell's sides, in face angle: a point at angle a from the side's great circle, measured along the
   // face's own grid, is at least R sin(a) g away from it, g = sqrt((1 + X^2) / (1 + X^2 + Y^2)), here taken at the
   // worst place of the cell.
   const auto margin = [&](double least, double most) {
     const double g = std::sqrt((1 + least) / (1 + least + most));
     const double sine = bowl / (bodyRadius * g);
-    return sine * (1 + 0.2 * sine * sine) * (4 / 3.14159265358979323846);  // asin(x) <= x (1 + 0.2 x^2) for x <= 0.6
+    return sine * (1 + 0.2 * sine * sine) * kFaceAngles;  // asin(x) <= x (1 + 0.2 x^2) for x <= 0.6
   };
   const double marginS = margin(s.least, t.most), marginT = margin(t.least, s.most);
   const double roomS = s.width - 2 * marginS, roomT = t.width - 2 * marginT;
   if (roomS < 0 || roomT < 0) return false;
-  const glm::dvec3 direction = cubeDirection(cell.face, s.start + marginS + roomS * hashUnit(mixHash(hash ^ 8)),
-                                             t.start + marginT + roomT * hashUnit(mixHash(hash ^ 9)));
+  const glm::dvec3 direction = cubeDirection(cell.face, s.start + marginS + roomS * hashUnit(mixHash(out.hash ^ 8)),
+                                             t.start + marginT + roomT * hashUnit(mixHash(out.hash ^ 9)));
   out.direction[0] = direction.x;
   out.direction[1] = direction.y;
   out.direction[2] = direction.z;
-  out.diameter = diameter;
-  out.hash = hash;
-  out.reach = (rock ? bowl : kApronRadii * bowl) * (1 + 1e-5);
   return true;
 }
 
@@ -179,34 +191,45 @@ Feature featureAt(const FeatureLayer& layer, double bodyRadius, const Site& site
   return makeCrater(site.direction, bodyRadius, site.diameter, wearOf(layer, site.hash), site.hash);
 }
 
-/// Calls visit(site) for the feature of every occupied cell within reach of the target, in the order face, row, column;
-/// where matters(hash) is false the site is not even computed.
-template <class Target, class Matters, class Visit>
-void forEachSite(const FeatureLayer& layer, double bodyRadius, const Target& target, double reach,
-                 const Matters& matters, const Visit& visit) {
+/// Of a reach, for what rounding does to it.
+double widened(double reach, double bodyRadius) noexcept { return reach * (1 + 1e-6) + 1e-9 * bodyRadius; }
+
+/// Calls visit(site) for every occupied cell's feature, of those that matter, that reaches the target with its middle,
+/// in the order face, row, column. reachOf: by a diameter. A cell's feature may lie anywhere in it but for half its
+/// width along the sides; most cells are seen not to matter by that, before the feature's place is computed.
+template <class Target, class Matters, class ReachOf, class Visit>
+void forEachSite(const FeatureLayer& layer, double bodyRadius, const Target& target, const Matters& matters,
+                 const ReachOf& reachOf, const Visit& visit) {
   thread_local std::vector<CellSpan> columnSpans;
+  const double widest = 1.02 * reachOf(layer.largestDiameter());
   for (int face = 0; face < 6; ++face) {
-    const auto [columns, rows] = target.cells(face, reach, layer.cellsPerFace);
+    const auto [columns, rows] = target.cells(face, widest, layer.cellsPerFace);
     if (columns.empty()) continue;
+    const FaceView view = target.viewOf(face);
     columnSpans.clear();
     for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
-      const CellSpan rowSpan = cellSpan(layer, row);
+      CellSpan rowSpan = cellSpan(layer, row);
       for (std::uint32_t column = columns.first; column <= columns.last; ++column) {
         if (row == rows.first) columnSpans.push_back(cellSpan(layer, column));
+        CellSpan& columnSpan = columnSpans[column - columns.first];
         const Cell cell{face, column, row};
         const std::uint64_t hash = cellHash(layer, cell);
+        if (!isOccupied(layer, cell, hash) || !matters(hash)) continue;
         Site site;
-        if (isOccupied(layer, cell, hash) && matters(hash) &&
-            chooseSite(layer, bodyRadius, cell, hash, columnSpans[column - columns.first], rowSpan, site)) {
+        site.hash = hash;
+        site.diameter = diameterOf(layer, hash);
+        const double reach = widened(reachOf(site.diameter), bodyRadius);
+        const double inset = bowlRadius(layer, site.diameter) / bodyRadius * kFaceAngles;
+        if (view.isBeyond({columnSpan.start + inset, columnSpan.start + columnSpan.width - inset},
+                          {rowSpan.start + inset, rowSpan.start + rowSpan.width - inset}, reach))
+          continue;
+        if (placeSite(layer, bodyRadius, cell, columnSpan, rowSpan, site) &&
+            target.touchedFrom(site.direction, bodyRadius, reach))
           visit(site);
-        }
       }
     }
   }
 }
-
-/// Of a reach, for what rounding does to it.
-double widened(double reach, double bodyRadius) noexcept { return reach * (1 + 1e-6) + 1e-9 * bodyRadius; }
 
 }  // namespace
 
@@ -255,8 +278,10 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
   const Cell cell{face, column, row};
   const std::uint64_t hash = cellHash(layer, cell);
   Site site;
-  if (!isOccupied(layer, cell, hash) ||
-      !chooseSite(layer, bodyRadius, cell, hash, cellSpan(layer, column), cellSpan(layer, row), site)) {
+  site.hash = hash;
+  site.diameter = diameterOf(layer, hash);
+  CellSpan columnSpan = cellSpan(layer, column), rowSpan = cellSpan(layer, row);
+  if (!isOccupied(layer, cell, hash) || !placeSite(layer, bodyRadius, cell, columnSpan, rowSpan, site)) {
     return false;
   }
   out = featureAt(layer, bodyRadius, site);
@@ -265,14 +290,11 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
 
 template <class Target>
 void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const Target& target, std::vector<Feature>& out) {
-  const bool rock = layer.stage == FeatureStage::Rock;
-  const double reach =
-      0.51 * layer.largestDiameter() * (rock ? 1 / (1 - kRockLobes) : kApronRadii / (1 - kCraterLobes));
+  const double bowls = layer.stage == FeatureStage::Rock ? 1 : kApronRadii;
   forEachSite(
-      layer, bodyRadius, target, reach, [](std::uint64_t) { return true; },
+      layer, bodyRadius, target, [](std::uint64_t) { return true; },
+      [&](double diameter) { return bowls * bowlRadius(layer, diameter) * (1 + 1e-5); },
       [&](const Site& site) {
-        // The shape costs more than the place: most of what lies in the cells around a target does not reach it.
-        if (!target.touchedFrom(site.direction, bodyRadius, widened(site.reach, bodyRadius))) return;
         const Feature f = featureAt(layer, bodyRadius, site);
         if (target.touchedFrom(f.center, 1.0, f.reach)) out.push_back(f);
       });
@@ -295,11 +317,9 @@ Halo makeHalo(const Feature& crater, double brightness, double rays) noexcept {
 void gatherHalos(const FeatureLayer& layer, double bodyRadius, const BallTarget& ball, std::vector<Halo>& out) {
   if (!layer.hasHalos()) return;
   forEachSite(
-      layer, bodyRadius, ball, 0.51 * layer.largestDiameter() * kHaloRadii,
-      [&](std::uint64_t hash) { return wearOf(layer, hash) < kHaloWear; },
+      layer, bodyRadius, ball, [&](std::uint64_t hash) { return wearOf(layer, hash) < kHaloWear; },
+      [](double diameter) { return 0.5 * diameter * kHaloRadii * (1 + 1e-5); },
       [&](const Site& site) {
-        const double reach = 0.5 * site.diameter * kHaloRadii * (1 + 1e-5);
-        if (!ball.touchedFrom(site.direction, bodyRadius, widened(reach, bodyRadius))) return;
         const double youth = 1 - wearOf(layer, site.hash) / kHaloWear;
         // Of many halos few are bright.
         const double brightness = (layer.exponent >= 4 ? 0.08 : 0.03) * youth * youth;

@@ -57,6 +57,25 @@ CellRange common(const CellRange& a, const CellRange& b) noexcept {
 
 }  // namespace
 
+bool FaceView::isBeyond(const AngleSpan& u, const AngleSpan& v, double reach) const noexcept {
+  const auto isOff = [&](double angle, const AngleSpan& span, double circleRadius) {
+    const double off = std::max(span.low - angle, angle - span.high);
+    if (!(off > 0 && off < 2)) return false;
+    const double radians = off * 0.7853981633974483;
+    return circleRadius * radians * (1 - radians * radians * (1.0 / 6.0)) > radius + reach;  // sin x >= x - x^3 / 6
+  };
+  return isOff(angleU, u, circleRadiusU) || isOff(angleV, v, circleRadiusV);
+}
+
+FaceView BallTarget::viewOf(int face) const noexcept {
+  const FaceAxes& axes = cubeFaceAxes(face);
+  const double outward = dot(axes.normal, ball_.center), u = dot(axes.u, ball_.center), v = dot(axes.v, ball_.center);
+  // Further round, the angles are not computed, and the circles stay 0: nothing is beyond.
+  if (!(outward > 0 && std::max(std::fabs(u), std::fabs(v)) <= 2 * outward)) return {};
+  return {ball_.radius, atanQuarterPi(u / outward), atanQuarterPi(v / outward), std::sqrt(outward * outward + u * u),
+          std::sqrt(outward * outward + v * v)};
+}
+
 CellBlock BallTarget::cells(int face, double reach, std::uint32_t cellsPerFace) const noexcept {
   const FaceAxes& axes = cubeFaceAxes(face);
   const double within = ball_.radius + reach, outward = dot(axes.normal, ball_.center);
@@ -82,13 +101,18 @@ RowTarget::RowTarget(const PointSet& points) noexcept : points_(points), ball_(p
     square += along_[a] * along_[a];
   }
   if (square > 0) inverseSquareLength_ = 1 / square;
-  double farthest = 0;
+  double farthest = 0, widest = 0, kept[3] = {};
   for (std::size_t i = 0; i < points.count; ++i) {
     double point[3];
     pointAt(i, point);
+    if (i % kStride == 0) std::copy(point, point + 3, kept);
+    double gap = 0;
+    for (int a = 0; a < 3; ++a) gap += (point[a] - kept[a]) * (point[a] - kept[a]);
+    widest = std::max(widest, gap);
     farthest = std::max(farthest, squareDistanceFromLine(point));
   }
   bulge_ = std::sqrt(farthest) * (1 + 1e-9);
+  gap_ = std::sqrt(widest) * (1 + 1e-9);
 }
 
 void RowTarget::pointAt(std::size_t index, double out[3]) const noexcept {
@@ -114,13 +138,14 @@ CellBlock RowTarget::cells(int face, double reach, std::uint32_t cellsPerFace) c
   if (around.empty()) return around;
   const FaceAxes& axes = cubeFaceAxes(face);
   TangentRange u, v;
-  for (std::size_t i = 0; i < points_.count; ++i) {
+  const double within = reach + gap_;
+  for (std::size_t i = 0; i < points_.count; i += kStride) {
     double point[3];
     pointAt(i, point);
     const double outward = dot(axes.normal, point);
-    if (!(outward > 2 * reach)) return around;  // at the rim of the face's hemisphere
-    u.add(dot(axes.u, point), outward, reach);
-    v.add(dot(axes.v, point), outward, reach);
+    if (!(outward > 2 * within)) return around;  // at the rim of the face's hemisphere
+    u.add(dot(axes.u, point), outward, within);
+    v.add(dot(axes.v, point), outward, within);
   }
   return {common(around.columns, cellsBetween(u.low, u.high, cellsPerFace)),
           common(around.rows, cellsBetween(v.low, v.high, cellsPerFace))};

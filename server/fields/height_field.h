@@ -49,6 +49,10 @@ struct SampleBatch {
   /// Where the samples are a grid's vertices: fields that are made of the grid itself give each vertex its own height,
   /// to the bit, and the gradient of the mesh around it. For others the directions say it all.
   std::optional<GridPlace> grid = {};
+  /// With a grid: how far heights may be from the field's own, beside roundings, where that saves time: inside a whole
+  /// grid, where no other tile has the vertex, and, if the grid of the same tile came before with the same scratch,
+  /// along an edge. 0: nowhere.
+  double toleranceMeters = 0;
   std::size_t count() const noexcept { return rows * rowLength; }
 };
 

@@ -127,6 +127,9 @@ double jensenGap(double slope, double spacing, double blend) noexcept {
 
 constexpr double kAlways = std::numeric_limits<double>::infinity();
 
+/// Metres, of heights in double on a body of a thousand kilometres: positions round to 2^-33 m there.
+constexpr double kDoubleRounding = 1e-6;
+
 void addNoiseBounds(std::span<const NoiseGroup> groups, std::vector<BoundedComponent>& out) {
   const auto addNoise = [&](Part part, double wavelength, double amplitude) {
     const double a = std::fabs(amplitude);
@@ -302,12 +305,10 @@ double LunarBounds::omittedAmplitudeMeters(double minWavelengthMeters, double fi
     sums[static_cast<std::size_t>(c.part)] += c.missingShare(minWavelengthMeters) * c.omitted();
   }
   const double total = std::max(sums[0], sums[1]) + sums[2] + sums[3];
-  // What float32 may differ from double, where the two levels differ in it; and the rounding of fine levels.
-  const bool mixed = minWavelengthMeters >= kCoarseWavelength && finestWavelengthMeters < kCoarseWavelength;
-  return std::min(total * (1 + 1e-9) + (mixed       ? kCoarseRounding
-                                        : total > 0 ? 1e-4
-                                                    : 0),
-                  range_.maxMeters - range_.minMeters);
+  if (total == 0) return 0;
+  const double rounding =
+      singleRounding(minWavelengthMeters) + singleRounding(finestWavelengthMeters) + kDoubleRounding;
+  return std::min(total * (1 + 1e-9) + rounding, range_.maxMeters - range_.minMeters);
 }
 
 double LunarBounds::interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept {
@@ -329,7 +330,7 @@ double LunarBounds::interpolationErrorMeters(double minWavelengthMeters, double 
   // Regolith is calmed by up to the dry land's slope times its own size: both are in the patches' slope, far below this
   // allowance.
   const double total = std::max(errors[0], errors[1]) + flood + errors[2] + clamp + 1.05 * errors[3];
-  const double rounding = minWavelengthMeters >= kCoarseWavelength ? 2 * kCoarseRounding : 1e-4;
+  const double rounding = 2 * singleRounding(minWavelengthMeters) + kDoubleRounding;
   return std::min(total * (1 + 1e-9) + rounding, range_.maxMeters - range_.minMeters);
 }
 

@@ -1,96 +1,9 @@
 // Craters, rocks and rays over one block of samples: part of every build of the lunar kernels.
 
+#include "server/fields/lunar_profile.inl"
 #include "server/fields/lunar_relief.inl"
 
 namespace {
-
-template <class Real>
-TERRANE_INLINE Real squareRoot(Real v);
-template <>
-TERRANE_INLINE float squareRoot(float v) {
-  return __builtin_sqrtf(v);
-}
-template <>
-TERRANE_INLINE double squareRoot(double v) {
-  return __builtin_sqrt(v);
-}
-
-template <class Real>
-struct Profile {
-  Real value, slope;  ///< metres; its derivative by s = (distance / radius)^2
-};
-
-template <class Real>
-struct Shape {
-  Real apex, rise, floor, floorBlend, inverseFloorBlend, rim, rimBlend, inverseRimBlend, peak;
-  /// For slopes: the inverse half-widths of the edges, rounded at least to the footprint; and what it and the level
-  /// leave of a slope.
-  Real inverseSoftFloor, inverseSoftRim, keptSlope;
-  Real shown;      ///< share of the height
-  Real steepness;  ///< of a rock
-};
-
-template <class Real>
-Shape<Real> shapeOf(const Feature& f, const Program& program) {
-  const double reach = program.footprint / f.radius;
-  const double floorRise = f.floor - f.apex;  // the bowl meets the floor where rise s = floorRise
-  const double floorSlope = 2.0 * __builtin_sqrt((floorRise > 0 ? floorRise : 0.0) * f.rise);
-  const double rimSlope = 2.0 * f.rise + f.rim * (3.0 / (kApronRadii - 1.0));
-  const double shown = shownShare(f.radius, program.minWavelength);
-  const double softFloor = floorSlope * reach, softRim = rimSlope * reach;
-  return {Real(f.apex),
-          Real(f.rise),
-          Real(f.floor),
-          Real(f.floorBlend),
-          Real(1.0 / f.floorBlend),
-          Real(f.rim),
-          Real(f.rimBlend),
-          Real(1.0 / f.rimBlend),
-          Real(f.peak),
-          Real(1.0 / (softFloor > f.floorBlend ? softFloor : f.floorBlend)),
-          Real(1.0 / (softRim > f.rimBlend ? softRim : f.rimBlend)),
-          Real(shown * keptSlope(program.footprint, 0.5 / f.radius)),
-          Real(shown),
-          Real(rockSteepness(f.radius, program.minWavelength))};
-}
-
-/// Bowl, flattened below by a floor, cut above by the apron of ejecta: roundedMin(roundedMax(bowl, floor), apron) +
-/// peak. Beyond kApronRadii the apron is 0 and the bowl far above it: exactly 0.
-template <class Real>
-TERRANE_INLINE Profile<Real> craterProfile(const Shape<Real>& p, Real s) {
-  const Real zero(0), one(1), half(0.5), sixth = Real(1.0 / 6.0);
-  const Real bowl = p.apex + p.rise * s;
-  const Real above = bowl - p.floor;
-  const Real aboveSize = above < zero ? -above : above;
-  Real t = one - aboveSize * p.inverseFloorBlend;
-  t = t > zero ? t : zero;
-  Real inner = (above < zero ? p.floor : bowl) + p.floorBlend * sixth * (t * t * t);
-  Real tSoft = one - aboveSize * p.inverseSoftFloor;
-  tSoft = tSoft > zero ? tSoft : zero;
-  const Real bowlWeight = above < zero ? half * (tSoft * tSoft) : one - half * (tSoft * tSoft);
-  Real innerSlope = bowlWeight * p.rise;
-
-  const Real peakRest = one - s * Real(1.0 / kPeakRadiusSquared);
-  const Real q = peakRest > zero ? peakRest : zero;
-  inner += p.peak * (q * q * q);
-  innerSlope -= p.peak * Real(3.0 / kPeakRadiusSquared) * (q * q);
-
-  const Real distance = squareRoot<Real>(s + Real(1e-12));
-  const Real rest = (Real(kApronRadii) - distance) * Real(1.0 / (kApronRadii - 1.0));
-  const Real a = rest > zero ? rest : zero;
-  const Real apron = p.rim * (a * a * a);
-  const Real apronSlope = p.rim * (a * a) * Real(-1.5 / (kApronRadii - 1.0)) / distance;
-
-  const Real difference = inner - apron;
-  const Real size = difference < zero ? -difference : difference;
-  Real r = one - size * p.inverseRimBlend;
-  r = r > zero ? r : zero;
-  Real rSoft = one - size * p.inverseSoftRim;
-  rSoft = rSoft > zero ? rSoft : zero;
-  const Real innerWeight = difference < zero ? one - half * (rSoft * rSoft) : half * (rSoft * rSoft);
-  return {((difference < zero ? inner : apron) - p.rimBlend * sixth * (r * r * r)) * p.shown,
-          (innerWeight * innerSlope + (one - innerWeight) * apronSlope) * p.keptSlope};
-}
 
 /// A boulder, steep sides and rounded top, or as much of one as a level shows: see rockSteepness.
 template <class Real>
@@ -102,29 +15,57 @@ TERRANE_INLINE Profile<Real> rockProfile(const Shape<Real>& p, Real s) {
           p.peak * (domeSlope + p.steepness * (steepSlope - domeSlope)) * p.keptSlope};
 }
 
-/// The stage is a compile-time choice so that the compiler sees which arrays of the block are written, and vectorises.
-template <class Real, FeatureStage Stage, Wanted kWanted>
-TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape, Block& b, std::size_t begin) {
-  constexpr bool kRock = Stage == FeatureStage::Rock, kOld = Stage == FeatureStage::OldCrater;
+/// The samples of a block's chunks that a feature reaches, in its own frame. Worked on in several passes: one loop over
+/// all of it would be a chain of a hundred operations, of which a processor overlaps few.
+template <class Real>
+struct Reached {
+  std::size_t count = 0, chunkCount = 0;
+  std::size_t ejectaBegin = 0;       ///< the samples from here on see a crater's apron alone
+  std::size_t begins[kBlockChunks];  ///< of the chunks in the block
+  alignas(64) Real dx[kBlockCapacity], dy[kBlockCapacity], dz[kBlockCapacity];  ///< from the centre, metres
+  alignas(64) Real square[kBlockCapacity];                                      ///< of the distance, in radii
+  alignas(64) Real cosine[kBlockCapacity], sine[kBlockCapacity];                ///< of the bearing
+  alignas(64) Real inverseRange[kBlockCapacity];                                ///< of the distance in the ground plane
+  alignas(64) Real outline[kBlockCapacity], turn[kBlockCapacity];               ///< and its derivative by the bearing
+  alignas(64) Real value[kBlockCapacity], slope[kBlockCapacity];                ///< of the profile
+};
+
+template <class Real>
+void placeSamples(const Feature& f, const Block& b, Reached<Real>& at) {
   const double cx = f.center[0], cy = f.center[1], cz = f.center[2];
+  for (std::size_t k = 0; k < at.chunkCount; ++k) {
+    const std::size_t from = at.begins[k], to = k * kChunk;
+#pragma GCC unroll 1  // or the compiler makes vectors of the outer loop
+    for (std::size_t i = 0; i < kChunk; ++i) {
+      at.dx[to + i] = static_cast<Real>(b.x[from + i] - cx);
+      at.dy[to + i] = static_cast<Real>(b.y[from + i] - cy);
+      at.dz[to + i] = static_cast<Real>(b.z[from + i] - cz);
+    }
+  }
   const Real ax = Real(f.axis1[0]), ay = Real(f.axis1[1]), az = Real(f.axis1[2]);
   const Real bx = Real(f.axis2[0]), by = Real(f.axis2[1]), bz = Real(f.axis2[2]);
   const Real inverse = Real(1.0 / f.radius), inverseSquared = inverse * inverse;
+  for (std::size_t i = 0; i < at.count; ++i) {
+    const Real dx = at.dx[i], dy = at.dy[i], dz = at.dz[i];
+    at.square[i] = (dx * dx + dy * dy + dz * dz) * inverseSquared;
+    const Real along = (dx * ax + dy * ay + dz * az) * inverse, across = (dx * bx + dy * by + dz * bz) * inverse;
+    const Real inverseRange = Real(1) / squareRoot<Real>(along * along + across * across + Real(1e-12));
+    at.cosine[i] = along * inverseRange;
+    at.sine[i] = across * inverseRange;
+    at.inverseRange[i] = inverseRange;
+  }
+}
+
+/// 1 + sum of cos and sin of 2..5 times the bearing.
+template <class Real>
+void outlineSamples(const Feature& f, Reached<Real>& at) {
   Real lobeCos[kLobes], lobeSin[kLobes];
   for (int k = 0; k < kLobes; ++k) {
     lobeCos[k] = Real(f.lobeCos[k]);
     lobeSin[k] = Real(f.lobeSin[k]);
   }
-  const float brightness = f.brightness * static_cast<float>(shape.shown);
-  for (std::size_t i = begin; i < begin + kChunk; ++i) {
-    const Real dx = static_cast<Real>(b.x[i] - cx), dy = static_cast<Real>(b.y[i] - cy),
-               dz = static_cast<Real>(b.z[i] - cz);
-    const Real square = (dx * dx + dy * dy + dz * dz) * inverseSquared;
-    const Real along = (dx * ax + dy * ay + dz * az) * inverse, across = (dx * bx + dy * by + dz * bz) * inverse;
-    const Real inverseRange = Real(1) / squareRoot<Real>(along * along + across * across + Real(1e-12));
-    const Real c = along * inverseRange, s = across * inverseRange;
-
-    // The outline: 1 + sum of cos and sin of 2..5 times the bearing.
+  for (std::size_t i = 0; i < at.count; ++i) {
+    const Real c = at.cosine[i], s = at.sine[i];
     Real cosine = c, sine = s, lobes = Real(0), turn = Real(0);
     for (int k = 0; k < kLobes; ++k) {
       const Real nextCosine = cosine * c - sine * s;
@@ -133,22 +74,51 @@ TERRANE_INLINE void addFeatureToChunk(const Feature& f, const Shape<Real>& shape
       lobes += lobeCos[k] * cosine + lobeSin[k] * sine;
       turn += Real(k + 2) * (lobeSin[k] * cosine - lobeCos[k] * sine);
     }
-    const Real outline = Real(1) + lobes;
-    const Real stretched = square * outline * outline;
+    at.outline[i] = Real(1) + lobes;
+    at.turn[i] = turn;
+  }
+}
+
+template <class Real, bool kRock>
+void profileSamples(const Shape<Real>& shape, Reached<Real>& at) {
+  for (std::size_t i = 0; i < at.ejectaBegin; ++i) {
+    const Real stretched = at.square[i] * at.outline[i] * at.outline[i];
     const Profile<Real> h = kRock ? rockProfile<Real>(shape, stretched) : craterProfile<Real>(shape, stretched);
+    at.value[i] = h.value;
+    at.slope[i] = h.slope;
+  }
+  for (std::size_t i = at.ejectaBegin; i < at.count; ++i) {
+    const Profile<Real> h = ejectaProfile<Real>(shape, at.square[i] * at.outline[i] * at.outline[i]);
+    at.value[i] = h.value;
+    at.slope[i] = h.slope;
+  }
+}
 
-    (kOld ? b.relief : b.young)[i] += static_cast<double>(h.value);
-    if constexpr (kWanted == Wanted::Heights) continue;
-    const Real radial = h.slope * Real(2) * outline * outline * inverseSquared;
-    const Real angular = h.slope * Real(2) * square * outline * turn * inverseRange * inverse;
-    (kOld ? b.reliefX : b.youngX)[i] += static_cast<float>(radial * dx + angular * (c * bx - s * ax));
-    (kOld ? b.reliefY : b.youngY)[i] += static_cast<float>(radial * dy + angular * (c * by - s * ay));
-    (kOld ? b.reliefZ : b.youngZ)[i] += static_cast<float>(radial * dz + angular * (c * bz - s * az));
-
-    if constexpr (kRock) {
-      const float rest = 1.0f - static_cast<float>(square);
-      const float inside = rest > 0.0f ? rest : 0.0f;
-      b.bright[i] += brightness * (inside * inside);
+/// The stage is a compile-time choice so that the compiler sees which arrays of the block are written, and vectorises.
+template <class Real, FeatureStage Stage, Wanted kWanted>
+void addReached(const Feature& f, float brightness, const Reached<Real>& at, Block& b) {
+  constexpr bool kRock = Stage == FeatureStage::Rock, kOld = Stage == FeatureStage::OldCrater;
+  const Real ax = Real(f.axis1[0]), ay = Real(f.axis1[1]), az = Real(f.axis1[2]);
+  const Real bx = Real(f.axis2[0]), by = Real(f.axis2[1]), bz = Real(f.axis2[2]);
+  const Real inverse = Real(1.0 / f.radius), inverseSquared = inverse * inverse;
+  for (std::size_t k = 0; k < at.chunkCount; ++k) {
+    const std::size_t to = at.begins[k], from = k * kChunk;
+#pragma GCC unroll 1
+    for (std::size_t j = 0; j < kChunk; ++j) {
+      const std::size_t i = to + j, n = from + j;
+      (kOld ? b.relief : b.young)[i] += static_cast<double>(at.value[n]);
+      if constexpr (kWanted == Wanted::Heights) continue;
+      const Real outline = at.outline[n], twice = at.slope[n] * Real(2), c = at.cosine[n], s = at.sine[n];
+      const Real radial = twice * outline * outline * inverseSquared;
+      const Real angular = twice * at.square[n] * outline * at.turn[n] * at.inverseRange[n] * inverse;
+      (kOld ? b.reliefX : b.youngX)[i] += static_cast<float>(radial * at.dx[n] + angular * (c * bx - s * ax));
+      (kOld ? b.reliefY : b.youngY)[i] += static_cast<float>(radial * at.dy[n] + angular * (c * by - s * ay));
+      (kOld ? b.reliefZ : b.youngZ)[i] += static_cast<float>(radial * at.dz[n] + angular * (c * bz - s * az));
+      if constexpr (kRock) {
+        const float rest = 1.0f - static_cast<float>(at.square[n]);
+        const float inside = rest > 0.0f ? rest : 0.0f;
+        b.bright[i] += brightness * (inside * inside);
+      }
     }
   }
 }
@@ -161,16 +131,41 @@ TERRANE_INLINE bool chunkReaches(const Block& b, std::size_t chunk, const double
   return dx * dx + dy * dy + dz * dz <= limit * limit;
 }
 
+/// The chunks that a feature touches, those that lie beyond innerReach from its centre last.
+template <class Real>
+void findChunks(const Feature& f, double innerReach, const Block& b, Reached<Real>& at) {
+  std::size_t beyond[kBlockChunks];
+  std::size_t inner = 0, outer = 0;
+  for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
+    if (!chunkReaches(b, chunk, f.center, f.reach)) continue;
+    if (chunkReaches(b, chunk, f.center, innerReach)) {
+      at.begins[inner++] = chunk * kChunk;
+    } else {
+      beyond[outer++] = chunk * kChunk;
+    }
+  }
+  for (std::size_t k = 0; k < outer; ++k) at.begins[inner + k] = beyond[k];
+  at.chunkCount = inner + outer;
+  at.count = at.chunkCount * kChunk;
+  at.ejectaBegin = inner * kChunk;
+}
+
 template <class Real, FeatureStage Stage, Wanted kWanted>
 void addFeatures(const FeatureRun& run, const Program& program, Block& b) {
+  constexpr bool kRock = Stage == FeatureStage::Rock;
+  Reached<Real> at;
   for (std::size_t k = 0; k < run.count; ++k) {
     const Feature& f = run.features[k];
     if (f.radius < program.minWavelength || !reaches(b, f.center, f.reach)) continue;
     const Shape<Real> shape = shapeOf<Real>(f, program);
-    for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
-      if (chunkReaches(b, chunk, f.center, f.reach))
-        addFeatureToChunk<Real, Stage, kWanted>(f, shape, b, chunk * kChunk);
-    }
+    // The reach is where the apron ends on the outline's narrowest bearing.
+    const double share = kRock ? 1.0 : ejectaFrom<Real>(shape) * (1.0 / kApronRadii);
+    findChunks<Real>(f, share < 1.0 ? share * f.reach : f.reach, b, at);
+    if (at.count == 0) continue;
+    placeSamples(f, b, at);
+    outlineSamples(f, at);
+    profileSamples<Real, kRock>(shape, at);
+    addReached<Real, Stage, kWanted>(f, f.brightness * static_cast<float>(shape.shown), at, b);
   }
 }
 
@@ -213,9 +208,9 @@ void addHaloToChunk(const Halo& h, float shown, Block& b, std::size_t begin) {
   }
 }
 
-void addHalos(const Program& program, Block& b) {
-  for (std::size_t k = 0; k < program.haloCount; ++k) {
-    const Halo& h = program.halos[k];
+void addHalos(const HaloRun& run, const Program& program, Block& b) {
+  for (std::size_t k = 0; k < run.count; ++k) {
+    const Halo& h = run.halos[k];
     const double shown = shownShare(kHaloRadii * h.radius, program.minWavelength);
     if (shown <= 0 || !reaches(b, h.center, h.reach)) continue;
     for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {

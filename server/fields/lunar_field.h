@@ -16,9 +16,9 @@
 // (shownShare, lunar_program.h), so that none is cut where levels meet; halos by their own radius, wide as they are, so
 // that what is a bright spot to one level is none to the next.
 //
-// Noise below 8 km, craters below 1 km and rocks are computed in float32 relative to their cell or centre, the rest in
-// double (at levels with cells under 2 m): no rounding step above some hundredths of a millimetre there. Every SIMD
-// path, batch and thread gives the same bits.
+// What is short beside a level's cells is computed in float32 relative to its cell or centre, the rest in double
+// (kDoubleWavelengths); inside tiles, what is long beside them is expanded (far_field.h). Every SIMD path and thread
+// gives the same bits, and every batch of which no tolerance is asked.
 
 #include <memory>
 #include <string>

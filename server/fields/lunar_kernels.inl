@@ -1,7 +1,7 @@
 // The lunar height field over one block of samples: part of every build of the lunar kernels. See lunar_field.h for the
 // model. Included after lunar_program.h and with kEvaluate naming the entry.
 
-#include "server/fields/lunar_features.inl"
+#include "server/fields/lunar_far.inl"
 
 namespace {
 
@@ -25,7 +25,8 @@ void clearBlock(Block& b) {
     b.dry[i] = 1.0;
     b.reliefX[i] = b.reliefY[i] = b.reliefZ[i] = b.lavaX[i] = b.lavaY[i] = b.lavaZ[i] = 0.0f;
     b.dryX[i] = b.dryY[i] = b.dryZ[i] = b.youngX[i] = b.youngY[i] = b.youngZ[i] = 0.0f;
-    b.rough[i] = b.roughX[i] = b.roughY[i] = b.roughZ[i] = b.bright[i] = b.mottle[i] = 0.0f;
+    b.rough[i] = b.last[i] = 0.0;
+    b.roughX[i] = b.roughY[i] = b.roughZ[i] = b.lastX[i] = b.lastY[i] = b.lastZ[i] = b.bright[i] = b.mottle[i] = 0.0f;
   }
 }
 
@@ -55,8 +56,8 @@ void composeHeight(const Program& p, Block& b) {
     const Blend bottom = roundedMax(surface.value + b.young[i], p.clampLow, p.clampBlend);
     const Blend top = roundedMax(-bottom.value, -p.clampHigh, p.clampBlend);
     const float dry = static_cast<float>(b.dry[i]);
-    const float calm = 1.0f - smoothing * (1.0f - dry), roughCalm = smoothing * b.rough[i];
-    b.height[i] = static_cast<double>(calm * b.rough[i]) - top.value;
+    const float calm = 1.0f - smoothing * (1.0f - dry), roughCalm = smoothing * static_cast<float>(b.rough[i]);
+    b.height[i] = static_cast<double>(calm) * b.rough[i] - top.value;
     if constexpr (kWanted == Wanted::Heights) continue;
 
     const float keep = static_cast<float>(bottom.weight * top.weight);
@@ -96,15 +97,12 @@ void composeHeight(const Program& p, Block& b) {
 
 template <Wanted kWanted>
 void evaluateAll(const Program& program, Block& block) {
-  clearBlock(block);
-  OctaveSamples<float> modulator;
-  for (std::size_t i = 0; i < block.count; ++i)
-    modulator.value[i] = modulator.x[i] = modulator.y[i] = modulator.z[i] = 0.0f;
-  if (program.reliefInDouble) {
-    addRelief<double, kWanted>(program.relief, program.footprint, block, modulator);
+  if (program.far != nullptr) {
+    startFromFar<kWanted>(*program.far, block);
   } else {
-    addRelief<float, kWanted>(program.relief, program.footprint, block, modulator);
+    clearBlock(block);
   }
+  addRelief<kWanted>(program, block);
   for (std::size_t k = 0; k < program.basinCount; ++k) {
     if (reaches(block, program.basins[k].center, program.basins[k].reach)) addBasin<kWanted>(program.basins[k], block);
   }
@@ -112,11 +110,10 @@ void evaluateAll(const Program& program, Block& block) {
     if (reaches(block, program.patches[k].center, program.patches[k].reach))
       addPatch<kWanted>(program.patches[k], block);
   }
-  for (std::size_t k = 0; k < program.regolithCount; ++k)
-    addRegolith<kWanted>(program.regolith[k], program.footprint, block, modulator);
+  for (std::size_t k = 0; k < program.regolithCount; ++k) addRegolith<kWanted>(program.regolith[k], program, block);
   for (std::size_t k = 0; k < program.runCount; ++k) addRun<kWanted>(program.runs[k], program, block);
   if constexpr (kWanted == Wanted::All) {
-    addHalos(program, block);
+    for (std::size_t k = 0; k < program.haloRunCount; ++k) addHalos(program.halos[k], program, block);
     for (std::size_t k = 0; k < program.rayCount; ++k) {
       if (reaches(block, program.rays[k].center, program.rays[k].reach)) addRays(program.rays[k], block);
     }

@@ -4,8 +4,6 @@
 
 namespace {
 
-#define TERRANE_INLINE inline __attribute__((always_inline))
-
 // Adding this to |t| < 2^51 rounds t to the nearest integer, which then stands in the low bits of the double.
 constexpr double kRoundingMagic = 6755399441055744.0;  // 1.5 * 2^52
 
@@ -106,8 +104,7 @@ TERRANE_INLINE Noise<Real> noiseInCell(const Cell& cell, Real fx, Real fy, Real 
 /// Heights have the same bits either way.
 enum class Wanted { All, Heights };
 
-/// One octave over a block; value and, if wanted, gradient (per metre of the rotated frame, times amplitude 1) into the
-/// arrays.
+/// One octave over a block.
 template <class Real>
 struct OctaveSamples {
   alignas(64) Real value[kBlockCapacity];
@@ -132,6 +129,7 @@ TERRANE_INLINE void storeGradient(const Noise<Real>& n, std::size_t i, OctaveSam
   out.z[i] = static_cast<float>(n.z);
 }
 
+/// Value and, if wanted, gradient (per metre of the rotated frame, times amplitude 1) into the arrays.
 template <class Real, Wanted kWanted>
 void octaveInOneCell(const RotatedBlock& block, const NoiseOctave& octave, const double* first,
                      OctaveSamples<Real>& out) {
@@ -199,32 +197,24 @@ RotatedBlock rotateBlock(Block& b, const double* m) {
     b.rotatedY[i] = (m[3] * b.x[i] + m[4] * b.y[i]) + m[5] * b.z[i];
     b.rotatedZ[i] = (m[6] * b.x[i] + m[7] * b.y[i]) + m[8] * b.z[i];
   }
+  // Spelt out in vectors: compilers do not reorder the comparisons of doubles.
+  typedef double Lanes __attribute__((vector_size(32), may_alias));
   const double* p[3] = {r.x, r.y, r.z};
   for (int axis = 0; axis < 3; ++axis) {
-    double low[8], high[8];
-    for (int j = 0; j < 8; ++j) low[j] = high[j] = p[axis][j];
-    for (std::size_t i = 8; i < b.count; i += 8) {
-      for (int j = 0; j < 8; ++j) {
-        const double value = p[axis][i + static_cast<std::size_t>(j)];
-        low[j] = value < low[j] ? value : low[j];
-        high[j] = value > high[j] ? value : high[j];
-      }
+    const Lanes* v = reinterpret_cast<const Lanes*>(p[axis]);
+    Lanes low = v[0], high = v[0];
+    for (std::size_t i = 1; i < b.count / 4; ++i) {
+      low = v[i] < low ? v[i] : low;
+      high = v[i] > high ? v[i] : high;
     }
     r.low[axis] = low[0];
     r.high[axis] = high[0];
-    for (int j = 1; j < 8; ++j) {
+    for (int j = 1; j < 4; ++j) {
       r.low[axis] = low[j] < r.low[axis] ? low[j] : r.low[axis];
       r.high[axis] = high[j] > r.high[axis] ? high[j] : r.high[axis];
     }
   }
   return r;
-}
-
-/// What is left of a wave's slope when it is averaged over +-footprint: sin(pi u) / (pi u) with u = 2 footprint /
-/// wavelength, by the first factors of its product.
-TERRANE_INLINE double keptSlope(double footprint, double inverseWavelength) {
-  const double u = 2.0 * footprint * inverseWavelength, square = u * u;
-  return square < 1.0 ? (1.0 - square) * (1.0 - 0.25 * square) : 0.0;
 }
 
 }  // namespace

@@ -9,14 +9,21 @@
 
 #include "common/numerics/strict_math.h"
 
+/// The vector builds of the kernels emit no function that other code could be linked to.
+#define TERRANE_INLINE inline __attribute__((always_inline))
+
 namespace terrane::lunar {
 
-/// From this wavelength on a level computes everything in float32: its rounding, below kCoarseRounding in all (some
-/// thirty roundings of 2^-24 in each of at most 45 km of amplitudes, were all features to meet in one place), is
-/// nothing beside the level's cells. Finer levels take the large features in double, or they would show steps of a
-/// tenth of a millimetre.
-inline constexpr double kCoarseWavelength = 4.0;
-inline constexpr double kCoarseRounding = 0.1;
+/// A level computes in float32, relative to their cell or centre, octaves of shorter wavelengths and features of
+/// smaller radii than so many times its own shortest wavelength, and the rest in double, or fine levels would show
+/// steps. The roundings of all that is in float32, some thirty of 2^-24 each, stay below singleRounding: the amplitudes
+/// of such octaves sum to some 40 wavelengths of the level, those of such craters to some 1,000, were all to meet in
+/// one place. No more than 0.1 m at any level: no level's amplitudes sum to more than 45 km.
+inline constexpr double kDoubleWavelengths = 512, kDoubleRadii = 256;
+TERRANE_INLINE double singleRounding(double minWavelength) noexcept {
+  const double bound = 2e-3 * minWavelength;
+  return bound < 0.1 ? bound : 0.1;
+}
 
 /// Samples are worked on in compact blocks that stay in the first-level cache, in steps of one AVX-512 vector.
 inline constexpr std::size_t kChunk = 16;
@@ -30,8 +37,12 @@ struct NoiseOctave {
   double offset[3];          ///< moves the lattice, so that the zeros of two octaves never meet
   double amplitude;          ///< metres, of relief or regolith
   double lavaAmplitude;      ///< metres, of the lava's surface (relief group only)
+  double mottle;             ///< share in the mottling of the ground's brightness
   std::uint32_t seed;
 };
+
+/// Whether a group is all of its octaves, or those that the far field holds (far_field.h), or the others.
+enum class GroupPart : std::uint8_t { Whole, Far, Near };
 
 /// Octaves that share a rotation and are summed before they are turned back.
 struct NoiseGroup {
@@ -39,6 +50,7 @@ struct NoiseGroup {
   std::size_t count;
   double rotation[9];  ///< row-major; orthogonal
   double modulation;   ///< group is scaled by 1 + modulation * (last octave of the group before, -1.04..1.04)
+  GroupPart part = GroupPart::Whole;  ///< of a regolith group
 };
 
 /// A basin: a bowl (1 - u^2)^3 with a ring of mountains around u = 1, u = distance^2 / radius^2.
@@ -48,6 +60,8 @@ struct Basin {
   double reach;  ///< metres: no influence beyond
   double depth, ring;
 };
+
+inline constexpr double kBasinRingHalfWidth = 0.45;  ///< in u
 
 /// Where lava may stand: 1 within the inner radius, 0 beyond reach, in u = distance^2 / reach^2.
 struct LavaPatch {
@@ -96,12 +110,18 @@ inline constexpr double kHaloRadii = 4.5;           ///< halos of young craters 
 inline constexpr double kPeakRadiusSquared = 0.06;  ///< central peak, in crater radii squared
 
 /// How much of a feature of this radius a level shows whose shortest wavelength is minWavelength: nothing up to that
-/// radius, all of it from four times that on, so that what is new at a level is small beside what was there. (Always
-/// inlined: the vector builds emit no function.)
-[[gnu::always_inline]] inline double shownShare(double radius, double minWavelength) noexcept {
+/// radius, all of it from four times that on, so that what is new at a level is small beside what was there.
+TERRANE_INLINE double shownShare(double radius, double minWavelength) noexcept {
   const double u = minWavelength / radius;
   const double s = u >= 1.0 ? 0.0 : u <= 0.25 ? 1.0 : (1.0 - u) * (1.0 / 0.75);
   return 0.5 * s * (1.0 + s);
+}
+
+/// What is left of a wave's slope when it is averaged over +-footprint: sin(pi u) / (pi u) with u = 2 footprint /
+/// wavelength, by the first factors of its product.
+TERRANE_INLINE double keptSlope(double footprint, double inverseWavelength) noexcept {
+  const double u = 2.0 * footprint * inverseWavelength, square = u * u;
+  return square < 1.0 ? (1.0 - square) * (1.0 - 0.25 * square) : 0.0;
 }
 
 enum class FeatureStage : std::uint8_t { OldCrater, YoungCrater, Rock };
@@ -110,7 +130,7 @@ enum class FeatureStage : std::uint8_t { OldCrater, YoungCrater, Rock };
 /// too coarse for the flank shows the dome (1 - s)^2 instead, or the light would break into teeth along the foot: 0
 /// (dome, up to a radius of twice minWavelength) .. 1 (rock, from eight times on). Between the two lies at most
 /// kDomeGap of the height: s (2 + s) (1 - s)^2 is 0.3481 at 0.366.
-[[gnu::always_inline]] inline double rockSteepness(double radius, double minWavelength) noexcept {
+TERRANE_INLINE double rockSteepness(double radius, double minWavelength) noexcept {
   return shownShare(0.5 * radius, minWavelength);
 }
 inline constexpr double kDomeGap = 0.35;
@@ -120,18 +140,27 @@ struct FeatureRun {
   const Feature* features;
   std::size_t count;
   FeatureStage stage;
-  bool inDouble;  ///< large ones: float32 would show steps of a tenth of a millimetre
+  bool inDouble;
 };
 
+/// Halos, in canonical order.
+struct HaloRun {
+  const Halo* halos;
+  std::size_t count;
+};
+
+struct FarExpansion;
+
 struct Program {
-  bool heightsOnly;  ///< a block's gradients and reflectance are left as they are
+  const FarExpansion* far;  ///< what the rest is added to; null for nothing
+  bool heightsOnly;         ///< a block's gradients and reflectance are left as they are
   double radius;
   double minWavelength;  ///< metres: features and halos of smaller radii are left out, of somewhat larger ones shown in
                          ///< part
   double footprint;      ///< metres: gradients and reflectance are averaged over this far; 0 for none
-  NoiseGroup relief;     ///< two sums: relief and lava
-  bool reliefInDouble;
-  const NoiseGroup* regolith;  ///< float32
+  double doubleWavelength;  ///< metres: octaves from here on are computed in double
+  NoiseGroup relief;        ///< two sums: relief and lava
+  const NoiseGroup* regolith;
   std::size_t regolithCount;
   const Basin* basins;
   std::size_t basinCount;
@@ -141,8 +170,8 @@ struct Program {
   std::size_t rayCount;
   const FeatureRun* runs;
   std::size_t runCount;
-  const Halo* halos;
-  std::size_t haloCount;
+  const HaloRun* halos;
+  std::size_t haloRunCount;
   double lavaTop, lavaFloor, lavaBlend;
   double clampLow, clampHigh, clampBlend;
   double mareSmoothing;  ///< regolith in full mare is scaled by 1 - this
@@ -164,8 +193,15 @@ struct alignas(64) Block {
   alignas(64) float dryX[kBlockCapacity], dryY[kBlockCapacity], dryZ[kBlockCapacity];
   alignas(64) double young[kBlockCapacity];
   alignas(64) float youngX[kBlockCapacity], youngY[kBlockCapacity], youngZ[kBlockCapacity];
-  alignas(64) float rough[kBlockCapacity], roughX[kBlockCapacity], roughY[kBlockCapacity], roughZ[kBlockCapacity];
+  alignas(64) double rough[kBlockCapacity];
+  alignas(64) float roughX[kBlockCapacity], roughY[kBlockCapacity], roughZ[kBlockCapacity];
   alignas(64) float bright[kBlockCapacity], mottle[kBlockCapacity];
+  /// The last octave of the group done last, which scales the next.
+  alignas(64) double last[kBlockCapacity];
+  alignas(64) float lastX[kBlockCapacity], lastY[kBlockCapacity], lastZ[kBlockCapacity];
+  /// The octaves of a regolith group, added up; before a group that is near in part, of its far part.
+  alignas(64) double sum[kBlockCapacity];
+  alignas(64) float sumX[kBlockCapacity], sumY[kBlockCapacity], sumZ[kBlockCapacity];
 
   alignas(64) double height[kBlockCapacity];
   alignas(64) float gradientX[kBlockCapacity], gradientY[kBlockCapacity], gradientZ[kBlockCapacity];

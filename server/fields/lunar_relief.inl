@@ -11,39 +11,64 @@ TERRANE_INLINE void rotateBack(const float* m, float x, float y, float z, float&
   bodyZ = (m[2] * x + m[5] * y) + m[8] * z;
 }
 
-/// Relief and lava are two sums over the same octaves. The last octave is left in `last` as the modulator of the first
-/// regolith group.
-template <class Real, Wanted kWanted>
-void addRelief(const NoiseGroup& group, double footprint, Block& b, OctaveSamples<float>& last) {
-  const RotatedBlock rotated = rotateBlock(b, group.rotation);
+struct Rotation {
   float m[9];
-  for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(group.rotation[i]);
+  explicit Rotation(const NoiseGroup& group) {
+    for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(group.rotation[i]);
+  }
+};
+
+template <class Real, Wanted kWanted>
+void addReliefOctave(const NoiseOctave& octave, const RotatedBlock& rotated, const Rotation& turn, double footprint,
+                     bool isLast, Block& b) {
   OctaveSamples<Real> n;
+  evaluateOctave<Real, kWanted>(rotated, octave, n);
+  const double a = octave.amplitude, l = octave.lavaAmplitude;
+  const double kept = keptSlope(footprint, octave.inverseWavelength) * octave.inverseWavelength;
+  const float da = static_cast<float>(a * kept), dl = static_cast<float>(l * kept);
+  const float weight = static_cast<float>(octave.mottle);
+  for (std::size_t i = 0; i < b.count; ++i) {
+    b.relief[i] += a * static_cast<double>(n.value[i]);
+    b.lava[i] += l * static_cast<double>(n.value[i]);
+    if constexpr (kWanted == Wanted::Heights) continue;
+    rotateBack(turn.m, n.x[i], n.y[i], n.z[i], n.x[i], n.y[i], n.z[i]);
+    b.reliefX[i] += da * n.x[i];
+    b.reliefY[i] += da * n.y[i];
+    b.reliefZ[i] += da * n.z[i];
+    b.lavaX[i] += dl * n.x[i];
+    b.lavaY[i] += dl * n.y[i];
+    b.lavaZ[i] += dl * n.z[i];
+    b.mottle[i] += weight * static_cast<float>(n.value[i]);
+  }
+  if (!isLast) return;
+  const float toUnit = static_cast<float>(octave.inverseWavelength);
+  for (std::size_t i = 0; i < b.count; ++i) {
+    b.last[i] = static_cast<double>(n.value[i]);
+    if constexpr (kWanted == Wanted::Heights) continue;
+    b.lastX[i] = toUnit * n.x[i];
+    b.lastY[i] = toUnit * n.y[i];
+    b.lastZ[i] = toUnit * n.z[i];
+  }
+}
+
+TERRANE_INLINE bool inDouble(const NoiseOctave& octave, const Program& program) {
+  return program.doubleWavelength * octave.inverseWavelength <= 1;
+}
+
+/// Relief and lava are two sums over the same octaves. The last octave is left as the modulator of the first regolith
+/// group.
+template <Wanted kWanted>
+void addRelief(const Program& program, Block& b) {
+  const NoiseGroup& group = program.relief;
+  if (group.count == 0) return;
+  const RotatedBlock rotated = rotateBlock(b, group.rotation);
+  const Rotation turn(group);
   for (std::size_t k = 0; k < group.count; ++k) {
     const NoiseOctave& octave = group.octaves[k];
-    evaluateOctave<Real, kWanted>(rotated, octave, n);
-    const double a = octave.amplitude, l = octave.lavaAmplitude;
-    const double kept = keptSlope(footprint, octave.inverseWavelength) * octave.inverseWavelength;
-    const float da = static_cast<float>(a * kept), dl = static_cast<float>(l * kept);
-    const float toUnit = static_cast<float>(octave.inverseWavelength);
-    const float weight = k < 2 ? 0.0f : 0.45f;  // mottling from some 250 km down
-    for (std::size_t i = 0; i < b.count; ++i) {
-      b.relief[i] += a * static_cast<double>(n.value[i]);
-      b.lava[i] += l * static_cast<double>(n.value[i]);
-      last.value[i] = static_cast<float>(n.value[i]);
-      if constexpr (kWanted == Wanted::Heights) continue;
-      float gx, gy, gz;
-      rotateBack(m, n.x[i], n.y[i], n.z[i], gx, gy, gz);
-      b.reliefX[i] += da * gx;
-      b.reliefY[i] += da * gy;
-      b.reliefZ[i] += da * gz;
-      b.lavaX[i] += dl * gx;
-      b.lavaY[i] += dl * gy;
-      b.lavaZ[i] += dl * gz;
-      b.mottle[i] += weight * static_cast<float>(n.value[i]);
-      last.x[i] = toUnit * gx;
-      last.y[i] = toUnit * gy;
-      last.z[i] = toUnit * gz;
+    if (inDouble(octave, program)) {
+      addReliefOctave<double, kWanted>(octave, rotated, turn, program.footprint, k + 1 == group.count, b);
+    } else {
+      addReliefOctave<float, kWanted>(octave, rotated, turn, program.footprint, k + 1 == group.count, b);
     }
   }
 }
@@ -56,17 +81,16 @@ TERRANE_INLINE bool reaches(const Block& b, const double* center, double reach) 
 
 template <Wanted kWanted>
 void addBasin(const Basin& basin, Block& b) {
-  constexpr double kRingHalfWidth = 0.45;
   for (std::size_t i = 0; i < b.count; ++i) {
     const double dx = b.x[i] - basin.center[0], dy = b.y[i] - basin.center[1], dz = b.z[i] - basin.center[2];
     const double u = (dx * dx + dy * dy + dz * dz) * basin.inverseRadiusSquared;
     const double bowl = u < 1.0 ? 1.0 - u * u : 0.0;
-    const double r = (u - 1.0) * (1.0 / kRingHalfWidth);
+    const double r = (u - 1.0) * (1.0 / kBasinRingHalfWidth);
     const double ring = r * r < 1.0 ? 1.0 - r * r : 0.0;
     b.relief[i] += basin.ring * (ring * ring * ring) - basin.depth * (bowl * bowl * bowl);
     if constexpr (kWanted == Wanted::Heights) continue;
     const double slope =
-        (6.0 * basin.depth * u * (bowl * bowl) - 6.0 * basin.ring * (ring * ring) * r * (1.0 / kRingHalfWidth)) *
+        (6.0 * basin.depth * u * (bowl * bowl) - 6.0 * basin.ring * (ring * ring) * r * (1.0 / kBasinRingHalfWidth)) *
         (2.0 * basin.inverseRadiusSquared);
     b.reliefX[i] += static_cast<float>(slope * dx);
     b.reliefY[i] += static_cast<float>(slope * dy);
@@ -94,45 +118,69 @@ void addPatch(const LavaPatch& patch, Block& b) {
   }
 }
 
-/// scale = 1 + modulation * last; the group's own last octave replaces it.
+template <class Real, Wanted kWanted>
+void addRegolithOctave(const NoiseOctave& octave, const RotatedBlock& rotated, double footprint, Block& b,
+                       OctaveSamples<double>* finest) {
+  OctaveSamples<Real> n;
+  evaluateOctave<Real, kWanted>(rotated, octave, n);
+  const double kept = keptSlope(footprint, octave.inverseWavelength), a = octave.amplitude;
+  const float mottle = static_cast<float>(octave.mottle * kept);
+  const float da = static_cast<float>(octave.amplitude * octave.inverseWavelength * kept);
+  for (std::size_t i = 0; i < b.count; ++i) {
+    b.sum[i] += a * static_cast<double>(n.value[i]);
+    if constexpr (kWanted == Wanted::Heights) continue;
+    b.mottle[i] += mottle * static_cast<float>(n.value[i]);
+    b.sumX[i] += da * n.x[i];
+    b.sumY[i] += da * n.y[i];
+    b.sumZ[i] += da * n.z[i];
+  }
+  if (finest == nullptr) return;
+  const float toUnit = static_cast<float>(octave.inverseWavelength);
+  for (std::size_t i = 0; i < b.count; ++i) {
+    finest->value[i] = static_cast<double>(n.value[i]);
+    if constexpr (kWanted == Wanted::Heights) continue;
+    finest->x[i] = toUnit * n.x[i];
+    finest->y[i] = toUnit * n.y[i];
+    finest->z[i] = toUnit * n.z[i];
+  }
+}
+
+/// rough += (1 + modulation * last) * sum; the group's own last octave replaces the last.
 template <Wanted kWanted>
-void addRegolith(const NoiseGroup& group, double footprint, Block& b, OctaveSamples<float>& last) {
+void scaleAndAdd(const NoiseGroup& group, const OctaveSamples<double>& finest, Block& b) {
+  const Rotation turn(group);
+  for (std::size_t i = 0; i < b.count; ++i) {
+    const double scale = 1.0 + group.modulation * b.last[i], v = group.modulation * b.sum[i];
+    b.rough[i] += scale * b.sum[i];
+    b.last[i] = finest.value[i];
+    if constexpr (kWanted == Wanted::Heights) continue;
+    const float s = static_cast<float>(scale), t = static_cast<float>(v);
+    float gx, gy, gz;
+    rotateBack(turn.m, b.sumX[i], b.sumY[i], b.sumZ[i], gx, gy, gz);
+    b.roughX[i] += s * gx + t * b.lastX[i];
+    b.roughY[i] += s * gy + t * b.lastY[i];
+    b.roughZ[i] += s * gz + t * b.lastZ[i];
+    rotateBack(turn.m, finest.x[i], finest.y[i], finest.z[i], b.lastX[i], b.lastY[i], b.lastZ[i]);
+  }
+}
+
+/// The far part of a group is left unscaled, for its near part to start from.
+template <Wanted kWanted>
+void addRegolith(const NoiseGroup& group, const Program& program, Block& b) {
   const RotatedBlock rotated = rotateBlock(b, group.rotation);
-  float m[9];
-  for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(group.rotation[i]);
-  OctaveSamples<float> n, sum;
-  for (std::size_t i = 0; i < b.count; ++i) sum.value[i] = sum.x[i] = sum.y[i] = sum.z[i] = 0.0f;
-  constexpr double kMottle = 0.35;  // an octave; all alike, so that none shows where it enters
+  if (group.part != GroupPart::Near)
+    for (std::size_t i = 0; i < b.count; ++i) b.sum[i] = b.sumX[i] = b.sumY[i] = b.sumZ[i] = 0;
+  OctaveSamples<double> finest;
   for (std::size_t k = 0; k < group.count; ++k) {
     const NoiseOctave& octave = group.octaves[k];
-    evaluateOctave<float, kWanted>(rotated, octave, n);
-    const double kept = keptSlope(footprint, octave.inverseWavelength);
-    const float a = static_cast<float>(octave.amplitude), mottle = static_cast<float>(kMottle * kept);
-    const float da = static_cast<float>(octave.amplitude * octave.inverseWavelength * kept);
-    for (std::size_t i = 0; i < b.count; ++i) {
-      sum.value[i] += a * n.value[i];
-      if constexpr (kWanted == Wanted::Heights) continue;
-      b.mottle[i] += mottle * n.value[i];
-      sum.x[i] += da * n.x[i];
-      sum.y[i] += da * n.y[i];
-      sum.z[i] += da * n.z[i];
+    OctaveSamples<double>* const kept = k + 1 == group.count ? &finest : nullptr;
+    if (inDouble(octave, program)) {
+      addRegolithOctave<double, kWanted>(octave, rotated, program.footprint, b, kept);
+    } else {
+      addRegolithOctave<float, kWanted>(octave, rotated, program.footprint, b, kept);
     }
   }
-  const NoiseOctave& finest = group.octaves[group.count - 1];
-  const float toUnit = static_cast<float>(finest.inverseWavelength);
-  const float modulation = static_cast<float>(group.modulation);
-  for (std::size_t i = 0; i < b.count; ++i) {
-    const float scale = 1.0f + modulation * last.value[i], v = modulation * sum.value[i];
-    b.rough[i] += scale * sum.value[i];
-    last.value[i] = n.value[i];
-    if constexpr (kWanted == Wanted::Heights) continue;
-    float gx, gy, gz;
-    rotateBack(m, sum.x[i], sum.y[i], sum.z[i], gx, gy, gz);
-    b.roughX[i] += scale * gx + v * last.x[i];
-    b.roughY[i] += scale * gy + v * last.y[i];
-    b.roughZ[i] += scale * gz + v * last.z[i];
-    rotateBack(m, toUnit * n.x[i], toUnit * n.y[i], toUnit * n.z[i], last.x[i], last.y[i], last.z[i]);
-  }
+  if (group.part != GroupPart::Far) scaleAndAdd<kWanted>(group, finest, b);
 }
 
 }  // namespace

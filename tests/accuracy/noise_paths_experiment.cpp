@@ -82,7 +82,7 @@ void addOctaves(const Settings& settings, int count, const std::vector<SimdPath>
                 Report& report, Seen& seen) {
   const auto octaves = lunarOctaves(kFinestExponent + count - 1, kFinestExponent, settings.seed);
   std::vector<lunar::NoiseGroup> groups;
-  const lunar::Program program = octavesOnly(octaves, 0, false, kRadiusMeters, groups);
+  const lunar::Program program = octavesOnly(octaves, std::numeric_limits<double>::infinity(), kRadiusMeters, groups);
   std::vector<Work> ways;
   for (const SimdPath path : paths)
     ways.push_back([&program, &blocks, evaluate = kernelOf(path)](std::size_t samples) {

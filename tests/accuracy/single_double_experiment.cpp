@@ -137,7 +137,7 @@ struct Seen {
   TimesNs defaultNs, bestNs;
   std::size_t levels = 0;
   std::size_t differing = 0;
-  double worstInCellsMeters = 0, fineInCellsMeters = 0, worstDoubleMeters = 0;
+  double worstInCellsMeters = 0, inCellsSteps = 0, worstDoubleMeters = 0;
   double floatTilt = 0, doubleTilt = 0;         ///< of normals from neighbours at the finest level, radians
   std::vector<double> moonMeters, earthMeters;  ///< error in float by level
 };
@@ -165,7 +165,7 @@ void addLevel(const Settings& settings, double radiusMeters, int level, Report& 
     seen.defaultNs = a;
     seen.bestNs = b;
     seen.worstInCellsMeters = std::max(seen.worstInCellsMeters, e.wholeInCells);
-    if (tile.place.reliefInDouble) seen.fineInCellsMeters = std::max(seen.fineInCellsMeters, e.wholeInCells);
+    seen.inCellsSteps = std::max(seen.inCellsSteps, e.wholeInCells / stepMeters(tile.place.stepExponent));
     seen.floatTilt = e.inFloat[kNeighbourNormals] / tile.place.cellMeters;
     seen.doubleTilt = e.inDouble[kNeighbourNormals] / tile.place.cellMeters;
     seen.worstDoubleMeters = std::max(seen.worstDoubleMeters, e.wholeDouble);
@@ -206,12 +206,13 @@ std::vector<std::string> findingsFrom(const Seen& seen) {
       dearer(a.wholeDouble() - a.inDouble[kNoise], a.wholeFloat() - a.inFloat[kNoise]),
       dearer(b.wholeDouble() - b.inDouble[kNoise], b.wholeFloat() - b.inFloat[kNoise])));
   findings.push_back(fmt::format(
-      "Terrane has double everywhere but within noise cells. That loses at most {:.2g} m, and {:.2g} m where cells are "
-      "under 2 m and broad relief is in double too (all double: {:.2g} m), and takes {} time against all float on any "
+      "Terrane has float only within the cells of noise of short waves, below {:.0f} times a level's shortest. That "
+      "loses "
+      "at most {:.2g} m and {:.2g} lattice steps (all double: {:.2g} m), and takes {} time against all float on any "
       "x86-64, {} with {}; all double would take {} and {}.",
-      seen.worstInCellsMeters, seen.fineInCellsMeters, seen.worstDoubleMeters, dearer(a.wholeInCells(), a.wholeFloat()),
-      dearer(b.wholeInCells(), b.wholeFloat()), best, dearer(a.wholeDouble(), a.wholeFloat()),
-      dearer(b.wholeDouble(), b.wholeFloat())));
+      lunar::kDoubleWavelengths, seen.worstInCellsMeters, seen.inCellsSteps, seen.worstDoubleMeters,
+      dearer(a.wholeInCells(), a.wholeFloat()), dearer(b.wholeInCells(), b.wholeFloat()), best,
+      dearer(a.wholeDouble(), a.wholeFloat()), dearer(b.wholeDouble(), b.wholeFloat())));
   findings.push_back(fmt::format(
       "Normals from gradients need no double. From the places of neighbours in float they are off by up to {:.2g} "
       "radians at level {} (2: they may point anywhere), in double by {:.1g}.",

@@ -35,6 +35,30 @@ TEST(LatticeRounding, GoesToTheNearestPointWithHalvesUpAndNegativesDown) {
   EXPECT_EQ(rounded(-large), -(std::int64_t{1} << 50));
 }
 
+/// By an integer and comparisons alone.
+double roundedByInteger(double x) {
+  const auto towardsZero = static_cast<std::int64_t>(x);
+  const std::int64_t lower = towardsZero - (static_cast<double>(towardsZero) > x ? 1 : 0);
+  return static_cast<double>(lower + (x - static_cast<double>(lower) >= 0.5 ? 1 : 0));
+}
+
+TEST(LatticeRounding, WithoutAnIntegerIsTheSameUpToItsLimit) {
+  std::mt19937_64 random = test::seededRandom(52);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const auto expectSame = [](double x) {
+    for (const double near : {std::nextafter(x, -1e300), x, std::nextafter(x, 1e300)})
+      ASSERT_EQ(roundedHalfUp(near), roundedByInteger(near)) << near;
+  };
+  for (int exponent = -60; exponent <= 51; ++exponent) {
+    const double scale = std::nextafter(std::ldexp(1.0, exponent), 0.0);
+    for (int i = 0; i < 2000; ++i) {
+      const double x = unit(random) * std::nextafter(scale, 0.0), whole = std::trunc(x);
+      for (const double y : {x, whole, whole + 0.5, whole - 0.5})
+        if (std::abs(y) < scale || exponent < 51) expectSame(y);
+    }
+  }
+}
+
 /// The control: the usual cast, which cuts towards 0.
 std::int64_t truncated(double x) { return static_cast<std::int64_t>(x + 0.5); }
 

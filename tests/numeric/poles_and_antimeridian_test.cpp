@@ -24,8 +24,8 @@ using namespace testing_support;
 constexpr double kPi = std::numbers::pi;
 constexpr std::array<int, 6> kLevels{1, 2, 7, 14, 22, 30};
 
-/// A component rounded to float moves by u = 2^-24 of itself at most, so does the length; 5 u of double before that.
-constexpr double kNormalLengthError = 0x1p-24 + 5 * 0x1p-53;
+/// In float, u = 2^-24: of a sum of squares 3 u, of its root half that and u, of the reciprocal u, of each product u.
+constexpr double kNormalLengthError = 4.5 * 0x1p-24 + 0x1p-46;
 
 class TilesAround : public testing::Test {
  protected:

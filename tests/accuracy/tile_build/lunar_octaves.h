@@ -11,7 +11,7 @@
 
 namespace terrane::accuracy {
 
-/// Octaves from this wavelength on, 2^13 m, are relief: summed in double.
+/// Amplitudes fall faster below this wavelength, 2^13 m.
 inline constexpr int kFinestReliefExponent = 13;
 
 /// Wavelengths from 2^coarsest to 2^finest metres, the coarsest first.
@@ -36,19 +36,19 @@ inline std::vector<lunar::NoiseOctave> lunarOctaves(int coarsest, int finest, st
   return octaves;
 }
 
-/// Points into `groups`, which it fills, and into `octaves`.
-inline lunar::Program octavesOnly(const std::vector<lunar::NoiseOctave>& octaves, std::size_t relief,
-                                  bool reliefInDouble, double radiusMeters, std::vector<lunar::NoiseGroup>& groups) {
+/// Points into `groups`, which it fills, and into `octaves`. Octaves from doubleWavelength on are computed in double.
+inline lunar::Program octavesOnly(const std::vector<lunar::NoiseOctave>& octaves, double doubleWavelength,
+                                  double radiusMeters, std::vector<lunar::NoiseGroup>& groups) {
   const auto group = [](const lunar::NoiseOctave* first, std::size_t count) {
     return lunar::NoiseGroup{first, count, {1, 0, 0, 0, 1, 0, 0, 0, 1}, 0};
   };
   lunar::Program program{};
   program.radius = radiusMeters;
-  program.relief = group(octaves.data(), relief);
-  program.reliefInDouble = reliefInDouble;
-  groups = {group(octaves.data() + relief, octaves.size() - relief)};
+  program.doubleWavelength = doubleWavelength;
+  program.relief = group(octaves.data(), 0);
+  groups = {group(octaves.data(), octaves.size())};
   program.regolith = groups.data();
-  program.regolithCount = relief < octaves.size() ? 1 : 0;
+  program.regolithCount = 1;
   constexpr double kFarMeters = 1e9;
   program.lavaTop = program.lavaFloor = program.clampLow = -kFarMeters;
   program.clampHigh = kFarMeters;

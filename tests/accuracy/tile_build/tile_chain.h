@@ -40,19 +40,19 @@ struct Place {
   int stepExponent;
   double cellMeters;
   std::vector<lunar::NoiseOctave> octaves;
-  std::size_t relief;
-  bool reliefInDouble;
+  double doubleWavelength;  ///< metres: the server computes octaves from here on in double
+  std::size_t broad;        ///< how many there are of them
 };
 
 inline Place placeAt(double radiusMeters, int level, std::uint64_t seed) {
   const std::uint32_t third = (1u << level) / 3;
-  Place place{radiusMeters, FacePath::cubeTile(0, level, third, third), stepExponent(radiusMeters, level), 0, {}, 0,
-              false};
+  Place place{radiusMeters, FacePath::cubeTile(0, level, third, third), stepExponent(radiusMeters, level), 0, {}, 0, 0};
   place.cellMeters = nominalTileWidthMeters(radiusMeters, level) / kCells;
   const int finest = std::ilogb(2 * place.cellMeters) + 1, coarsest = std::ilogb(radiusMeters);
   place.octaves = lunarOctaves(coarsest, finest, seed);
-  place.relief = static_cast<std::size_t>(coarsest - std::max(finest, kFinestReliefExponent) + 1);
-  place.reliefInDouble = 2 * place.cellMeters < lunar::kCoarseWavelength;
+  place.doubleWavelength = lunar::kDoubleWavelengths * 2 * place.cellMeters;
+  for (const lunar::NoiseOctave& octave : place.octaves)
+    place.broad += place.doubleWavelength * octave.inverseWavelength <= 1 ? 1 : 0;
   return place;
 }
 
@@ -130,9 +130,7 @@ struct Ground {
   Columns<float> gradient;
 };
 
-inline OctaveSum octaveSum(const Place& place) {
-  return {place.octaves.data(), place.octaves.size(), place.relief, place.reliefInDouble};
-}
+inline OctaveSum octaveSum(const Place& place) { return {place.octaves.data(), place.octaves.size(), place.broad}; }
 
 template <class Real>
 Ground groundOf(const OctaveSum& sum, OctaveLoop<Real> loop, const Columns<Real>& positions) {

@@ -41,8 +41,7 @@ struct TileLoopsOf {
 struct OctaveSum {
   const lunar::NoiseOctave* octaves;
   std::size_t count;
-  std::size_t broad;   ///< so many of the first are summed in double, as the server sums relief
-  bool broadInDouble;  ///< and computed in it, as it does where cells are under 2 m
+  std::size_t broad;  ///< so many of the first are computed in double where the loop has doubles at all
 };
 
 /// Heights, and gradients without their sphere, at blocks of kBlockCapacity positions each.
@@ -54,7 +53,7 @@ struct TileLoops {
   TileLoopsOf<float> inFloat;
   TileLoopsOf<double> inDouble;
   OctaveLoop<float> octavesInFloat;
-  OctaveLoop<double> octavesInCells;  ///< cells split in double, float within: the server's way
+  OctaveLoop<double> octavesInCells;  ///< cells split in double, float within but for broad ones: the server's way
   OctaveLoop<double> octavesInDouble;
 };
 

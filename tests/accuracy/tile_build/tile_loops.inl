@@ -216,24 +216,20 @@ void sumOctaves(const OctaveSum& sum, Triples<const Position> all, std::size_t b
     findBounds(p.x, bounds[0]);
     findBounds(p.y, bounds[1]);
     findBounds(p.z, bounds[2]);
-    Sums<double> broad;
-    Sums<Fine> fine;
-    clear(broad);
-    clear(fine);
+    Sums<Position> sums;
+    clear(sums);
     for (std::size_t k = 0; k < sum.count; ++k) {
-      if (k >= sum.broad) {
-        addOctave<Fine>(p, bounds, sum.octaves[k], fine);
-      } else if (sum.broadInDouble) {
-        addOctave<double>(p, bounds, sum.octaves[k], broad);
+      if (k < sum.broad) {
+        addOctave<Position>(p, bounds, sum.octaves[k], sums);
       } else {
-        addOctave<Fine>(p, bounds, sum.octaves[k], broad);
+        addOctave<Fine>(p, bounds, sum.octaves[k], sums);
       }
     }
     for (std::size_t i = 0; i < kBlockCapacity; ++i) {
-      heights[first + i] = static_cast<double>(fine.height[i]) + broad.height[i];
-      gradient.x[first + i] = fine.x[i] + broad.x[i];
-      gradient.y[first + i] = fine.y[i] + broad.y[i];
-      gradient.z[first + i] = fine.z[i] + broad.z[i];
+      heights[first + i] = static_cast<double>(sums.height[i]);
+      gradient.x[first + i] = sums.x[i];
+      gradient.y[first + i] = sums.y[i];
+      gradient.z[first + i] = sums.z[i];
     }
   }
 }

@@ -9,7 +9,7 @@
 namespace terrane::accuracy {
 
 ProductNoise::ProductNoise(const Place& place, SimdPath path, const Columns<double>& blockPositions)
-    : program_(octavesOnly(place.octaves, place.relief, place.reliefInDouble, place.radiusMeters, groups_)),
+    : program_(octavesOnly(place.octaves, place.doubleWavelength, place.radiusMeters, groups_)),
       evaluate_(kernelOf(path)),
       blocks_(kBlocks) {
   for (std::size_t slot = 0; slot < kSlots; ++slot) {
@@ -60,13 +60,13 @@ std::size_t builtVerticesThatDiffer(const TileLoopsOf<double>& loops, int level)
   if (!built) return kVertices;
 
   const auto field = makeHeightField(builder.body(), bestSimdPath());
-  const double minWavelength =
-      levelAccuracies(*field, place.radiusMeters, Scheme::Cube, kCells, level).back().minWavelengthMeters;
+  const LevelAccuracy accuracy = levelAccuracies(*field, place.radiusMeters, Scheme::Cube, kCells, level).back();
   Columns<double> directions(kVertices);
   directionsOf(place, loops, directions);
   SurfaceSamples samples;
-  field->evaluate({directions.x.data(), directions.y.data(), directions.z.data(), kSide, kSide, 0.5 * minWavelength},
-                  minWavelength, samples);
+  field->evaluate({directions.x.data(), directions.y.data(), directions.z.data(), kSide, kSide,
+                   0.5 * accuracy.minWavelengthMeters, GridPlace{place.path, kCells}, accuracy.toleranceMeters},
+                  accuracy.minWavelengthMeters, samples);
   const auto lattice = latticeOf(place, place.stepExponent, loops, directions, samples.heightMeters);
   std::vector<float> normals(3 * kVertices);
   loops.gradientNormals(directions.in(), samples.heightMeters.data(),

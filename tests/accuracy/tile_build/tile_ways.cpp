@@ -142,7 +142,7 @@ const TileLoops& loopsOf(SimdPath path) {
 Tile::Tile(Place where, const TileLoops& loops)
     : place(std::move(where)),
       sum(octaveSum(place)),
-      sumInFloat{sum.octaves, sum.count, 0, false},
+      sumInFloat{sum.octaves, sum.count, 0},
       inFloat(resultsOf(place, loops.inFloat, loops.octavesInFloat, sumInFloat)),
       inCells(resultsOf(place, loops.inDouble, loops.octavesInCells, sum)),
       inDouble(resultsOf(place, loops.inDouble, loops.octavesInDouble, sum)) {}

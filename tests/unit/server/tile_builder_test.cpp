@@ -12,6 +12,7 @@
 #include "common/tiling/triangle_grid.h"
 #include "proto/gltf_tile.h"
 #include "server/build/grid_directions.h"
+#include "server/build/level_accuracy.h"
 #include "server/build/tile_topology.h"
 #include "tests/unit/server/built_tiles.h"
 
@@ -28,10 +29,10 @@ class TilesBuilt : public OfScheme {
 };
 INSTANTIATE_TEST_SUITE_P(Grounds, TilesBuilt, allGrounds(), nameOfGround);
 
-TEST_P(TilesBuilt, PutVerticesWhereTheFieldSaysWithinHalfAStep) {
+TEST_P(TilesBuilt, PutVerticesWhereTheFieldSaysWithinHalfAStepAndTheTolerance) {
   std::mt19937_64 random(kSeed);
   const auto field = makeHeightField(builder().body(), bestSimdPath());
-  const double rounding = GetParam().field == FieldKind::Midpoint ? 1e-3 : 1e-6;
+  const double rounding = GetParam().field == FieldKind::Midpoint ? 1e-3 : kToleranceSteps;
   SurfaceSamples samples;
   GridDirections directions;
   for (int level = 0; level <= maxLevel(); level += 3) {

@@ -1,0 +1,73 @@
+#pragma once
+// Local expansions of the far field (as in Greengard and Rokhlin 1987, "A fast algorithm for particle simulations"):
+// what varies slowly over a patch of ground, each of the kernels' sums a polynomial in two coordinates. Plain data;
+// body frame, metres. far_field.h says what is far, far_fit.h makes the polynomials, lunar_far.inl evaluates them.
+
+#include <cstddef>
+
+#include "server/fields/lunar_program.h"
+
+namespace terrane::lunar {
+
+/// Degrees of what heights are made of, and of slopes and brightness. All terms a^i b^j with i + j <= degree: row by
+/// row, j = 0 first, i upwards.
+inline constexpr int kFarHeightDegree = 5, kFarSlopeDegree = 3;
+constexpr int farTerms(int degree) noexcept { return (degree + 1) * (degree + 2) / 2; }
+
+template <class Real, int kDegree>
+struct FarPolynomial {
+  bool isConstant;  ///< then the first coefficient is all
+  Real coefficients[farTerms(kDegree)];
+};
+using FarHeight = FarPolynomial<double, kFarHeightDegree>;
+using FarSlope = FarPolynomial<float, kFarSlopeDegree>;
+
+struct FarExpansion {
+  double origin[3];
+  double alongA[3], alongB[3];  ///< a = alongA . (position - origin), b likewise; both within -1..1 on the patch
+  FarHeight relief, lava, dry, young, rough, last, sum;
+  FarSlope reliefX, reliefY, reliefZ, lavaX, lavaY, lavaZ, dryX, dryY, dryZ, youngX, youngY, youngZ;
+  FarSlope roughX, roughY, roughZ, lastX, lastY, lastZ, sumX, sumY, sumZ, bright, mottle;
+};
+
+/// Calls visit(polynomial, array) for each polynomial of an expansion and the array of a block that it is of; either
+/// may be const.
+///
+template <class Expansion, class Samples, class Visit>
+TERRANE_INLINE void forEachFarHeight(Expansion& far, Samples& b, const Visit& visit) {
+  visit(far.relief, b.relief);
+  visit(far.lava, b.lava);
+  visit(far.dry, b.dry);
+  visit(far.young, b.young);
+  visit(far.rough, b.rough);
+  visit(far.last, b.last);
+  visit(far.sum, b.sum);
+}
+template <class Expansion, class Samples, class Visit>
+TERRANE_INLINE void forEachFarSlope(Expansion& far, Samples& b, const Visit& visit) {
+  visit(far.reliefX, b.reliefX);
+  visit(far.reliefY, b.reliefY);
+  visit(far.reliefZ, b.reliefZ);
+  visit(far.lavaX, b.lavaX);
+  visit(far.lavaY, b.lavaY);
+  visit(far.lavaZ, b.lavaZ);
+  visit(far.dryX, b.dryX);
+  visit(far.dryY, b.dryY);
+  visit(far.dryZ, b.dryZ);
+  visit(far.youngX, b.youngX);
+  visit(far.youngY, b.youngY);
+  visit(far.youngZ, b.youngZ);
+  visit(far.roughX, b.roughX);
+  visit(far.roughY, b.roughY);
+  visit(far.roughZ, b.roughZ);
+  visit(far.lastX, b.lastX);
+  visit(far.lastY, b.lastY);
+  visit(far.lastZ, b.lastZ);
+  visit(far.sumX, b.sumX);
+  visit(far.sumY, b.sumY);
+  visit(far.sumZ, b.sumZ);
+  visit(far.bright, b.bright);
+  visit(far.mottle, b.mottle);
+}
+
+}  // namespace terrane::lunar
