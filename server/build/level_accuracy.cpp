@@ -20,12 +20,16 @@ double sagMeters(double cell, double lowestRadius, double heightSpan) noexcept {
   return (0.5 * cell * cell + rise * rise) / (4.0 * lowestRadius);
 }
 
-}  // namespace
-
+/// How far a skirt hangs below the lowest of the edges that may meet it, so that the lattice's rounding opens nothing:
+/// half a step in each axis for a vertex of the tile, twice that for one of a coarser neighbour. Nor what the tolerance
+/// of the skirt's and both tiles' heights does. And by a corner's lean, which takes the skirt's end along the edge by
+/// less than that: up ground of 45 degrees, as much too high. The field's own rounding comes on top.
 double skirtMarginMeters(double radiusMeters, int level, Scheme scheme) noexcept {
   return (3.0 * 0.8660254037844387 + 4.0 * kToleranceSteps + skirtCornerFlareSteps(scheme)) *
          stepMeters(stepExponent(radiusMeters, level, scheme));
 }
+
+}  // namespace
 
 std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, Scheme scheme,
                                            int cellsPerEdge, int maxLevel) {
@@ -40,8 +44,11 @@ std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radi
     accuracy.minWavelengthMeters = 2.0 * cell;
     accuracy.toleranceMeters = kToleranceSteps * stepMeters(stepExponent(radiusMeters, level, scheme));
     accuracy.geometricErrorMeters = kErrorPerCell * cell;
-    accuracy.skirtSlackMeters = skirtMarginMeters(radiusMeters, level, scheme) +
-                                sagMeters(longestEdge(scheme) * cell, radiusMeters + heights.minMeters, span);
+    // Of the skirt's heights and the neighbour's, which may be of the coarser level.
+    accuracy.skirtMarginMeters =
+        skirtMarginMeters(radiusMeters, level, scheme) + 2.0 * field.roundingMeters(4.0 * cell);
+    accuracy.skirtSlackMeters =
+        accuracy.skirtMarginMeters + sagMeters(longestEdge(scheme) * cell, radiusMeters + heights.minMeters, span);
     if (level < maxLevel) {
       // The bound for square cells holds for triangles too: both rest on the mean square distance of a point from the
       // vertices it lies between, which is the half diagonal's at most, s^2 / 2, and the squared circumradius of an

@@ -13,6 +13,7 @@ namespace terrane {
 struct LevelAccuracy {
   double minWavelengthMeters = 0;   ///< the field is sampled down to here: two cells
   double subtreeSlackMeters = 0;    ///< proven: no descendant's terrain leaves the tile's own vertex heights by more
+  double skirtMarginMeters = 0;     ///< skirts hang this far below what they must cover (level_accuracy.cpp)
   double skirtSlackMeters = 0;      ///< proven: no skirt hangs further below the lowest terrain around it (skirt.h)
   double toleranceMeters = 0;       ///< how far a tile's heights may be from the field's: kToleranceSteps
   double geometricErrorMeters = 0;  ///< estimate, strictly decreasing with the level; see kErrorPerCell
@@ -31,11 +32,5 @@ inline constexpr double kToleranceSteps = 1.0 / 64;
 /// Levels 0 .. maxLevel.
 std::vector<LevelAccuracy> levelAccuracies(const HeightField& field, double radiusMeters, Scheme scheme,
                                            int cellsPerEdge, int maxLevel);
-
-/// How far a skirt hangs below the lowest of the edges that may meet it, so that the lattice's rounding opens nothing:
-/// half a step in each axis for a vertex of the tile, twice that for one of a coarser neighbour. Nor what the tolerance
-/// of the skirt's and both tiles' heights does. And by a corner's
-/// lean, which takes the skirt's end along the edge by less than that: up ground of 45 degrees, as much too high.
-double skirtMarginMeters(double radiusMeters, int level, Scheme scheme) noexcept;
 
 }  // namespace terrane

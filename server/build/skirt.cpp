@@ -36,7 +36,7 @@ class SkirtBuilder {
     if (tile_.path.level() > 0) lowerToCoarserEdges();
     if (static_cast<std::size_t>(tile_.path.level()) + 1 < tile_.levels.size()) lowerToFinerEdges();
     shareCorners();
-    const double margin = skirtMarginMeters(tile_.radiusMeters, tile_.path.level(), tile_.path.scheme());
+    const double margin = tile_.levels[static_cast<std::size_t>(tile_.path.level())].skirtMarginMeters;
     for (double& height : lowest_) height -= margin;
   }
 

@@ -153,7 +153,9 @@ double FarField::takeLandmarks(const Program& whole, bool far, Part& out) const 
 
 double FarField::errorOf(const FeatureRun& run, std::size_t index, const Program& atLevel) const noexcept {
   const Feature& feature = run.features[index];
-  if (run.stage == FeatureStage::Rock || feature.radius < kLeastFarFeatureRadii * patch_.ball.radius)
+  // The next coarser level, whose edges are added to the expansion too, must show it in whole.
+  if (run.stage == FeatureStage::Rock || feature.radius < kLeastFarFeatureRadii * patch_.ball.radius ||
+      shownShare(feature.radius, 2 * minWavelength_) < 1)
     return std::numeric_limits<double>::infinity();
   return farCraterError(feature, atLevel, patch_.ball);
 }

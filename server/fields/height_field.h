@@ -83,6 +83,9 @@ class HeightField {
   /// Proven: how far h(down to minWavelengthMeters) may be from the bilinear surface through samples spacingMeters
   /// apart.
   virtual double interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept = 0;
+  /// Proven: how far two evaluations of a level's heights at one place may be from each other beside the tolerance:
+  /// what float32 rounds, where one of them has it.
+  virtual double roundingMeters(double minWavelengthMeters) const noexcept = 0;
   /// Proven range of all heights.
   virtual HeightRange heightRange() const noexcept = 0;
   /// What shapes the field's values, for the body's revision: name, version and every parameter.

@@ -37,6 +37,9 @@ class LunarField final : public HeightField {
   void evaluate(const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out) const override;
   double omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept override;
   double interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept override;
+  double roundingMeters(double minWavelengthMeters) const noexcept override {
+    return lunar::singleRounding(minWavelengthMeters);
+  }
   HeightRange heightRange() const noexcept override;
   std::string identity() const override;
 

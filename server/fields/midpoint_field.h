@@ -31,6 +31,7 @@ class MidpointField final : public HeightField {
   double omittedAmplitudeMeters(double minWavelengthMeters, double finestWavelengthMeters) const noexcept override;
   /// Samples of a grid that is at least as fine as the surface lose nothing.
   double interpolationErrorMeters(double minWavelengthMeters, double spacingMeters) const noexcept override;
+  double roundingMeters(double /*minWavelengthMeters*/) const noexcept override { return 0; }
   HeightRange heightRange() const noexcept override;
   std::string identity() const override;
 

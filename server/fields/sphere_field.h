@@ -10,6 +10,7 @@ class SphereField final : public HeightField {
   void evaluate(const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out) const override;
   double omittedAmplitudeMeters(double, double) const noexcept override { return 0; }
   double interpolationErrorMeters(double, double) const noexcept override { return 0; }
+  double roundingMeters(double /*minWavelengthMeters*/) const noexcept override { return 0; }
   HeightRange heightRange() const noexcept override { return {0, 0}; }
   std::string identity() const override { return "sphere 1"; }
 };

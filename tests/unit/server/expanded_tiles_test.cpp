@@ -30,24 +30,31 @@ class ExpandedTiles : public OfScheme {
 
   const LevelAccuracy& accuracy(int level) const { return levels_[static_cast<std::size_t>(level)]; }
 
-  void evaluate(const HeightField& field, const FacePath& path, double toleranceMeters, SurfaceSamples& out) {
-    gridDirections(path, kCells, directions_);
-    SampleBatch batch{directions_.x.data(), directions_.y.data(), directions_.z.data(),
-                      directions_.x.size() / (kCells + 1), kCells + 1};
-    batch.footprintMeters = 0.5 * accuracy(path.level()).minWavelengthMeters;
-    batch.grid = GridPlace{path, kCells};
-    batch.toleranceMeters = toleranceMeters;
-    field.evaluate(batch, accuracy(path.level()).minWavelengthMeters, out);
+  static double minWavelength(int level, int cells) {
+    return 2 * nominalTileWidthMeters(kMoon, level, GetParam()) / cells;
   }
 
-  /// An edge as the finer level has it.
-  void evaluateEdge(const FacePath& path, double toleranceMeters, SurfaceSamples& out) {
-    GridDirections edge;
-    appendEdgeDirections(path, 1, 2 * kCells, edge);
-    SampleBatch batch{edge.x.data(), edge.y.data(), edge.z.data(), 1, edge.x.size()};
-    batch.grid = GridPlace{path, 2 * kCells, 1};
+  void evaluate(const HeightField& field, const FacePath& path, double toleranceMeters, SurfaceSamples& out,
+                int cells = kCells) {
+    gridDirections(path, cells, directions_);
+    const auto side = static_cast<std::size_t>(cells) + 1;
+    SampleBatch batch{directions_.x.data(), directions_.y.data(), directions_.z.data(), directions_.x.size() / side,
+                      side};
+    batch.footprintMeters = 0.5 * minWavelength(path.level(), cells);
+    batch.grid = GridPlace{path, cells};
     batch.toleranceMeters = toleranceMeters;
-    field_->evaluate(batch, accuracy(path.level() + 1).minWavelengthMeters, out);
+    field.evaluate(batch, minWavelength(path.level(), cells), out);
+  }
+
+  /// An edge as the level beside the tile's has it: step -1 or 1.
+  void evaluateEdge(const FacePath& path, int cells, int step, double toleranceMeters, SurfaceSamples& out) {
+    const int edgeCells = step < 0 ? cells / 2 : 2 * cells;
+    GridDirections edge;
+    appendEdgeDirections(path, 1, edgeCells, edge);
+    SampleBatch batch{edge.x.data(), edge.y.data(), edge.z.data(), 1, edge.x.size()};
+    batch.grid = GridPlace{path, edgeCells, 1};
+    batch.toleranceMeters = toleranceMeters;
+    field_->evaluate(batch, minWavelength(path.level() + step, cells), out);
   }
 
   std::vector<bool> onBorder() const {
@@ -107,7 +114,8 @@ TEST_P(ExpandedTiles, AreWithinTheirToleranceInsideAndTheSameOnTheBorder) {
       ASSERT_TRUE(!border[i] || sameSample(whole, expanded, i)) << path.text() << " vertex " << i;
       worst.add(whole, expanded, i);
     }
-    EXPECT_LE(worst.height, tolerance) << path.text();
+    EXPECT_LE(worst.height, tolerance + field_->roundingMeters(accuracy(path.level()).minWavelengthMeters))
+        << path.text();
     EXPECT_LE(worst.slope, 3e-4) << path.text();
     EXPECT_LE(worst.reflectance, 0.25 * kColorScale / 255) << path.text();
     worstShare = std::max(worstShare, worst.height / tolerance);
@@ -146,28 +154,32 @@ TEST_P(ExpandedTiles, AreEvaluatedInFullWhereTheToleranceIsTooSmall) {
   }
 }
 
+/// Of few cells too, where a crater as large as the tile is only just shown.
 TEST_P(ExpandedTiles, LendTheirExpansionToTheirOwnEdgesOnly) {
   std::mt19937_64 random(kSeed + 3);
   SurfaceSamples grid, edge, fullEdge, otherEdge, fullOtherEdge;
   int lent = 0;
-  for (int level = 6; level < maxLevel(); level += 2) {
+  for (int round = 0; round < 300; ++round) {
+    const int level = 6 + round % (maxLevel() - 6), cells = 2 << round % 7, step = round % 2 == 0 ? 1 : -1;
     const FacePath path = randomTile(random, level), other = randomTile(random, level);
     const double tolerance = accuracy(level).toleranceMeters;
-    evaluate(*field_, path, tolerance, grid);
+    const double rounding = field_->roundingMeters(minWavelength(level + step, cells));
+    evaluate(*field_, path, tolerance, grid, cells);
     edge.scratch = otherEdge.scratch = grid.scratch;
-    evaluateEdge(path, tolerance, edge);
-    evaluateEdge(other, tolerance, otherEdge);
-    evaluateEdge(path, 0, fullEdge);
-    evaluateEdge(other, 0, fullOtherEdge);
+    evaluateEdge(path, cells, step, tolerance, edge);
+    evaluateEdge(other, cells, step, tolerance, otherEdge);
+    evaluateEdge(path, cells, step, 0, fullEdge);
+    evaluateEdge(other, cells, step, 0, fullOtherEdge);
     bool differs = false;
     for (std::size_t i = 0; i < edge.heightMeters.size(); ++i) {
-      EXPECT_LE(std::abs(edge.heightMeters[i] - fullEdge.heightMeters[i]), tolerance) << path.text();
+      EXPECT_LE(std::abs(edge.heightMeters[i] - fullEdge.heightMeters[i]), tolerance + rounding)
+          << path.text() << " cells " << cells << " step " << step;
       ASSERT_TRUE(sameBits(otherEdge.heightMeters, fullOtherEdge.heightMeters, i)) << other.text();
       differs = differs || !sameBits(edge.heightMeters, fullEdge.heightMeters, i);
     }
     lent += differs ? 1 : 0;
   }
-  EXPECT_GT(lent, 3);
+  EXPECT_GT(lent, 100);
 }
 
 }  // namespace
