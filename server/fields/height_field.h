@@ -34,6 +34,7 @@ struct GridPlace {
   FacePath path;
   int cellsPerEdge = 0;
   int skirtEdge = kWholeGrid;
+  bool isWholeGrid() const noexcept { return skirtEdge == kWholeGrid; }
 };
 
 /// Directions to sample, structure of arrays. Rows matter only for speed (a kernel may skip whole rows): count = rows *
@@ -65,6 +66,14 @@ struct SurfaceSamples {
   std::vector<float> reflectance;  ///< linear normal albedo, 0..kColorScale; empty if the field has one colour
   struct Scratch;                  ///< kernels' own memory
   std::shared_ptr<Scratch> scratch;
+
+  void resize(std::size_t count) {
+    heightMeters.resize(count);
+    gradientX.resize(count);
+    gradientY.resize(count);
+    gradientZ.resize(count);
+    reflectance.resize(count);
+  }
 };
 
 /// Heights of neighbouring vertices of a tile differ by at most this many times their distance (79 degrees); skirt_test

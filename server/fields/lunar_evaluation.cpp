@@ -1,7 +1,6 @@
 // LunarField::evaluate: batches cut into blocks, with the features near them, run through the kernels.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 
@@ -174,7 +173,7 @@ class LunarField::Evaluation {
       300;  ///< in wavelengths of the finest layer; a tile has a ball of some 25 to 50
 
   double radius() const noexcept { return field_.radius_; }
-  bool isEdge() const noexcept { return batch_.grid && batch_.grid->skirtEdge != GridPlace::kWholeGrid; }
+  bool isEdge() const noexcept { return batch_.grid && !batch_.grid->isWholeGrid(); }
   TileGrid gridOfTile() const noexcept { return {batch_.grid->path.scheme(), batch_.grid->cellsPerEdge}; }
   bool isExpanded() const noexcept {
     return scratch_.expandedFor == field_.features_ && scratch_.expandedPath == batch_.grid->path;
@@ -213,19 +212,12 @@ class LunarField::Evaluation {
     if (!field.isWorthwhile()) return false;
     const Program far = field.farOf(program_);
     if (!(field.errorMeters() <= batch_.toleranceMeters)) return false;
-    Block& block = scratch_.block;
-    block.count = (kFarNodeCount + kChunk - 1) / kChunk * kChunk;
-    for (std::size_t i = 0; i < block.count; ++i) {
-      const int node = static_cast<int>(std::min<std::size_t>(i, kFarNodeCount - 1));
-      double p[3];
+    fillBlock(kFarNodeCount, [&](std::size_t i, double p[3]) {
+      const int node = static_cast<int>(i);
       patch.pointAt(farNodeA(node), farNodeB(node), p);
-      block.x[i] = p[0];
-      block.y[i] = p[1];
-      block.z[i] = p[2];
-    }
-    boundBlock(block);
-    field_.evaluateBlock_(far, block);
-    fitExpansion(patch, block, scratch_.expansion);
+    });
+    field_.evaluateBlock_(far, scratch_.block);
+    fitExpansion(patch, scratch_.block, scratch_.expansion);
     scratch_.expandedFor = field_.features_;
     scratch_.expandedPath = batch_.grid->path;
     return true;
@@ -241,17 +233,29 @@ class LunarField::Evaluation {
     program_.haloRunCount = 1;
   }
 
-  void evaluateBlock(std::span<const std::uint32_t> samples, bool gathered) {
+  /// With count points, and the last of them again up to whole chunks.
+  template <class PointAt>
+  void fillBlock(std::size_t count, const PointAt& pointAt) {
     Block& block = scratch_.block;
-    block.count = (samples.size() + kChunk - 1) / kChunk * kChunk;
-    const double scale = radius();
+    block.count = (count + kChunk - 1) / kChunk * kChunk;
     for (std::size_t i = 0; i < block.count; ++i) {
-      const std::size_t from = samples[std::min(i, samples.size() - 1)];
-      block.x[i] = batch_.x[from] * scale;
-      block.y[i] = batch_.y[from] * scale;
-      block.z[i] = batch_.z[from] * scale;
+      double p[3];
+      pointAt(std::min(i, count - 1), p);
+      block.x[i] = p[0];
+      block.y[i] = p[1];
+      block.z[i] = p[2];
     }
     boundBlock(block);
+  }
+
+  void evaluateBlock(std::span<const std::uint32_t> samples, bool gathered) {
+    const double scale = radius();
+    fillBlock(samples.size(), [&](std::size_t i, double p[3]) {
+      p[0] = batch_.x[samples[i]] * scale;
+      p[1] = batch_.y[samples[i]] * scale;
+      p[2] = batch_.z[samples[i]] * scale;
+    });
+    const Block& block = scratch_.block;
     if (!gathered) {
       if (block.radius > widestBall_ && samples.size() > 1) {
         for (std::size_t i = 0; i < samples.size(); ++i) evaluateBlock(samples.subspan(i, 1), false);
@@ -264,7 +268,7 @@ class LunarField::Evaluation {
               1.0,
               {{block.center[0], block.center[1], block.center[2]}, block.radius}});
     }
-    field_.evaluateBlock_(program_, block);
+    field_.evaluateBlock_(program_, scratch_.block);
     store(samples);
   }
 
@@ -292,11 +296,7 @@ class LunarField::Evaluation {
 
 void LunarField::evaluate(const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out) const {
   const std::size_t count = batch.count();
-  out.heightMeters.resize(count);
-  out.gradientX.resize(count);
-  out.gradientY.resize(count);
-  out.gradientZ.resize(count);
-  out.reflectance.resize(count);
+  out.resize(count);
   if (count == 0) return;
   if (!out.scratch) out.scratch = std::make_shared<SurfaceSamples::Scratch>();
   Evaluation(*this, batch, minWavelengthMeters, out).run();

@@ -181,7 +181,6 @@ struct Program {
 /// All of a block's working memory and its results.
 struct alignas(64) Block {
   std::size_t count;  ///< padded to whole chunks
-  double low[3], high[3];
   double chunkCenter[kBlockChunks][3], chunkRadius[kBlockChunks];
   double center[3], radius;
 

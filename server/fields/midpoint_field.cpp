@@ -56,14 +56,9 @@ int MidpointField::gridLevelOf(double minWavelengthMeters) const noexcept {
 
 void MidpointField::evaluate(const SampleBatch& batch, double minWavelengthMeters, SurfaceSamples& out) const {
   const std::size_t count = batch.count();
-  out.heightMeters.resize(count);
-  out.gradientX.resize(count);
-  out.gradientY.resize(count);
-  out.gradientZ.resize(count);
-  out.reflectance.resize(count);
+  out.resize(count);
   const midpoint::Surface surface{displacement_, gridLevelOf(minWavelengthMeters), radius_};
-  if (batch.grid && batch.grid->skirtEdge != GridPlace::kWholeGrid)
-    return sampleEdge(surface, *batch.grid, out.heightMeters);
+  if (batch.grid && !batch.grid->isWholeGrid()) return sampleEdge(surface, *batch.grid, out.heightMeters);
   if (batch.grid) {
     sampleGrid(surface, *batch.grid, out);
   } else {

@@ -10,23 +10,32 @@ namespace {
 
 std::size_t pieces(std::size_t n, std::size_t most) noexcept { return (n + most - 1) / most; }
 
+/// A grid's border, edge by edge: a corner is of the first that has it.
+std::vector<std::vector<std::uint32_t>> edgesOf(const TileGrid& grid) {
+  std::vector<std::vector<std::uint32_t>> edges(grid.isSquare() ? 4 : 3);
+  for (GridVertex at; at.j <= grid.cells; ++at.j) {
+    for (at.i = 0; at.i <= grid.rowEnd(at.j); ++at.i) {
+      const unsigned borders = grid.borders(at);
+      if (borders == 0) continue;
+      std::size_t edge = 0;
+      while ((borders & grid.borderOf(static_cast<int>(edge))) == 0) ++edge;
+      edges[edge].push_back(static_cast<std::uint32_t>(grid.index(at)));
+    }
+  }
+  return edges;
+}
+
 }  // namespace
 
 SampleBlocks::SampleBlocks(std::size_t rows, std::size_t rowLength, const std::optional<TileGrid>& grid)
     : rows_(rows), rowLength_(rowLength), grid_(grid) {
   std::vector<bool> isOnBorder(rows * rowLength, false);
-  if (!grid) {
-    listInside(isOnBorder);
-    insideCount_ = ends_.size();
-    return;
-  }
-  SampleBlocks border(0, 0, std::nullopt);
-  border.listBorder(*grid, isOnBorder);
+  const auto edges = grid ? edgesOf(*grid) : std::vector<std::vector<std::uint32_t>>();
+  for (const auto& edge : edges)
+    for (const std::uint32_t sample : edge) isOnBorder[sample] = true;
   listInside(isOnBorder);
   insideCount_ = ends_.size();
-  const std::size_t inside = samples_.size();
-  samples_.insert(samples_.end(), border.samples_.begin(), border.samples_.end());
-  for (const std::size_t end : border.ends_) ends_.push_back(inside + end);
+  listBorder(edges);
 }
 
 /// A block's samples lie in strips of about four rows, column by column: then 16 in a row, a chunk, lie in a square,
@@ -53,17 +62,11 @@ void SampleBlocks::listInside(const std::vector<bool>& isOnBorder) {
   }
 }
 
-void SampleBlocks::listBorder(const TileGrid& grid, std::vector<bool>& isOnBorder) {
-  for (int edge = 0; edge < (grid.isSquare() ? 4 : 3); ++edge) {
-    std::size_t inBlock = 0;
-    for (GridVertex at; at.j <= grid.cells; ++at.j) {
-      for (at.i = 0; at.i <= grid.rowEnd(at.j); ++at.i) {
-        const auto sample = static_cast<std::size_t>(grid.index(at));
-        if ((grid.borders(at) & grid.borderOf(edge)) == 0 || isOnBorder[sample]) continue;
-        isOnBorder[sample] = true;
-        samples_.push_back(static_cast<std::uint32_t>(sample));
-        if (++inBlock % kBlockCapacity == 0) endBlock();
-      }
+void SampleBlocks::listBorder(const std::vector<std::vector<std::uint32_t>>& edges) {
+  for (const auto& edge : edges) {
+    for (std::size_t k = 0; k < edge.size(); ++k) {
+      samples_.push_back(edge[k]);
+      if ((k + 1) % kBlockCapacity == 0) endBlock();
     }
     endBlock();
   }

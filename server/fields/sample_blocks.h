@@ -31,7 +31,7 @@ class SampleBlocks {
 
  private:
   void listInside(const std::vector<bool>& isOnBorder);
-  void listBorder(const TileGrid& grid, std::vector<bool>& isOnBorder);
+  void listBorder(const std::vector<std::vector<std::uint32_t>>& edges);
   void endBlock() {
     if (samples_.size() > (ends_.empty() ? 0 : ends_.back())) ends_.push_back(samples_.size());
   }
