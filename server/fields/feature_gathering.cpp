@@ -1,61 +1,48 @@
 #include "server/fields/feature_gathering.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "common/numerics/strict_math.h"
 
 namespace terrane::lunar {
 namespace {
 
-/// A ball is gathered a little larger than asked: a border's samples between the vertices bulge out of the tile's ball.
-constexpr double kSlack = 1.01;
+/// Features are gathered for a patch larger than asked by this share of its width on either side: a border's samples
+/// between the vertices bulge out of the tile's ball.
+constexpr double kSlack = 0.005;
 /// What was gathered for a ball this many times larger would rather be gathered anew: most of it would be out of reach.
 constexpr double kMostExcess = 2.5;
-
-double distance(const double a[3], const double b[3]) noexcept {
-  const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
-  return std::sqrt(dx * dx + dy * dy + dz * dz);
-}
 
 }  // namespace
 
 bool FeatureGathering::covers(const FeatureTables& tables, const PointSet& points) const noexcept {
-  if (tables_.get() != &tables || ball_.radius > kMostExcess * points.ball.radius) return false;
-  const double limit = ball_.radius * ball_.radius;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const double dx = points.x[i] * points.scale - ball_.center[0], dy = points.y[i] * points.scale - ball_.center[1],
-                 dz = points.z[i] * points.scale - ball_.center[2];
-    if (!(dx * dx + dy * dy + dz * dz <= limit)) return false;
-  }
-  return true;
+  return tables_.get() == &tables && patch_.ball().radius <= kMostExcess * points.ball.radius && patch_.holds(points);
 }
 
-void FeatureGathering::start(const std::shared_ptr<const FeatureTables>& tables, const Ball& ball) {
+void FeatureGathering::start(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points) {
   tables_ = tables;
-  ball_ = ball;
-  ball_.radius *= kSlack;
+  PointSet wider = points;
+  wider.ball.radius *= 1 + 2 * kSlack;
+  patch_ = PatchTarget(wider, kSlack);
   features_.clear();
   layerEnds_.clear();
   landmarks_.clear();
   halos_.clear();
   haloEnds_.clear();
   for (const Halo& h : tables->landmarkHalos)
-    if (distance(h.center, ball_.center) <= h.reach + ball_.radius) halos_.push_back(h);
+    if (patch_.touchedFrom(h.center, 1, h.reach)) halos_.push_back(h);
   haloEnds_.push_back(halos_.size());
   for (const Feature& f : tables->landmarks)
-    if (distance(f.center, ball_.center) <= f.reach + ball_.radius) landmarks_.push_back(f);
+    if (patch_.touchedFrom(f.center, 1, f.reach)) landmarks_.push_back(f);
 }
 
 GatheredFeatures FeatureGathering::near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
                                         const FeatureWants& wants) {
-  if (!covers(*tables, points)) start(tables, points.ball);
+  if (!covers(*tables, points)) start(tables, points);
   return {runs(points, wants), wants.border ? std::span<const Halo>() : halos(wants.minWavelengthMeters)};
 }
 
-void FeatureGathering::gatherForBall(std::size_t count) {
+void FeatureGathering::gatherForPatch(std::size_t count) {
   while (layerEnds_.size() < count) {
-    gatherFeatures(tables_->layers[layerEnds_.size()], tables_->bodyRadius, BallTarget(ball_), features_);
+    gatherFeatures(tables_->layers[layerEnds_.size()], tables_->bodyRadius, patch_, features_);
     layerEnds_.push_back(features_.size());
   }
 }
@@ -64,7 +51,7 @@ std::span<const FeatureRun> FeatureGathering::runs(const PointSet& points, const
   const std::vector<FeatureLayer>& layers = tables_->layers;
   std::size_t count = 0;
   while (count < layers.size() && layers[count].longestWavelengthMeters() >= wants.minWavelengthMeters) ++count;
-  if (!wants.border) gatherForBall(count);
+  if (!wants.border) gatherForPatch(count);
   runs_.clear();
   const double doubleFrom = kDoubleRadii * wants.minWavelengthMeters;
   const auto add = [&](const std::vector<Feature>& from, std::size_t begin, std::size_t end,
@@ -101,7 +88,7 @@ std::span<const Halo> FeatureGathering::halos(double minWavelength) {
   std::size_t count = 0;
   while (count < layers.size() && layers[count].longestHaloMeters() >= minWavelength) ++count;
   while (haloEnds_.size() <= count) {
-    gatherHalos(layers[haloEnds_.size() - 1], tables_->bodyRadius, BallTarget(ball_), halos_);
+    gatherHalos(layers[haloEnds_.size() - 1], tables_->bodyRadius, patch_, halos_);
     haloEnds_.push_back(halos_.size());
   }
   return std::span(halos_).first(haloEnds_[count]);

@@ -1,7 +1,7 @@
 #pragma once
-// The craters, their halos and the rocks near a ball, gathered once for all batches that lie within it: a tile's grid,
-// then its borders at the levels beside it. What only the borders ask for is gathered near them alone. Body frame,
-// metres. Belongs to one thread.
+// The craters, their halos and the rocks near a patch of ground, gathered once for all batches that lie in it: a tile's
+// grid, then its borders at the levels beside it. What only the borders ask for is gathered near them alone. Body
+// frame, metres. Belongs to one thread.
 
 #include <memory>
 #include <span>
@@ -44,13 +44,13 @@ class FeatureGathering {
  private:
   bool covers(const FeatureTables& tables, const PointSet& points) const noexcept;
   std::span<const FeatureRun> runs(const PointSet& points, const FeatureWants& wants);
-  /// Gathers the first count layers for the ball.
-  void gatherForBall(std::size_t count);
+  /// Gathers the first count layers for the patch.
+  void gatherForPatch(std::size_t count);
   std::span<const Halo> halos(double minWavelength);
-  void start(const std::shared_ptr<const FeatureTables>& tables, const Ball& ball);
+  void start(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points);
 
   std::shared_ptr<const FeatureTables> tables_;  ///< held, so that it is never mistaken for another's
-  Ball ball_;
+  PatchTarget patch_{Ball{}};
   std::vector<Feature> features_, landmarks_;
   std::vector<Halo> halos_;
   std::vector<std::size_t> layerEnds_,

@@ -144,9 +144,10 @@ bool isOccupied(const FeatureLayer& layer, const Cell& cell, std::uint64_t hash)
 
 /// Where a cell's feature is and how large: all of it but its shape.
 struct Site {
-  double direction[3];
   double diameter = 0;
   std::uint64_t hash = 0;
+  double s = 0, t = 0;  ///< face angles
+  double direction[3];
 };
 
 /// Cumulative N(> D) ~ D^-2 between D0 and 2 D0: D = D0 / sqrt(1 - 3/4 u).
@@ -162,8 +163,7 @@ double bowlRadius(const FeatureLayer& layer, double diameter) noexcept {
 constexpr double kFaceAngles = 4 / 3.14159265358979323846;  ///< to a radian
 
 /// False if the cell is too narrow for the feature.
-bool placeSite(const FeatureLayer& layer, double bodyRadius, const Cell& cell, CellSpan& s, CellSpan& t,
-               Site& out) noexcept {
+bool placeSite(const FeatureLayer& layer, double bodyRadius, CellSpan& s, CellSpan& t, Site& out) noexcept {
   findTangents(s);
   findTangents(t);
   const double bowl = bowlRadius(layer, out.diameter);
@@ -173,17 +173,21 @@ bool placeSite(const FeatureLayer& layer, double bodyRadius, const Cell& cell, C
   const auto margin = [&](double least, double most) {
     const double g = std::sqrt((1 + least) / (1 + least + most));
     const double sine = bowl / (bodyRadius * g);
-    return sine * (1 + 0.2 * sine * sine) * kFaceAngles;  // asin(x) <= x (1 + 0.2 x^2) for x <= 0.6
+    return sine * (1 + 0.2 * sine * sine) * kFaceAngles;  // asin(x) <= x (1 + 0.2 x^2) for x <= 1/2
   };
   const double marginS = margin(s.least, t.most), marginT = margin(t.least, s.most);
   const double roomS = s.width - 2 * marginS, roomT = t.width - 2 * marginT;
   if (roomS < 0 || roomT < 0) return false;
-  const glm::dvec3 direction = cubeDirection(cell.face, s.start + marginS + roomS * hashUnit(mixHash(out.hash ^ 8)),
-                                             t.start + marginT + roomT * hashUnit(mixHash(out.hash ^ 9)));
+  out.s = s.start + marginS + roomS * hashUnit(mixHash(out.hash ^ 8));
+  out.t = t.start + marginT + roomT * hashUnit(mixHash(out.hash ^ 9));
+  return true;
+}
+
+void directSite(int face, Site& out) noexcept {
+  const glm::dvec3 direction = cubeDirection(face, out.s, out.t);
   out.direction[0] = direction.x;
   out.direction[1] = direction.y;
   out.direction[2] = direction.z;
-  return true;
 }
 
 Feature featureAt(const FeatureLayer& layer, double bodyRadius, const Site& site) noexcept {
@@ -203,9 +207,9 @@ void forEachSite(const FeatureLayer& layer, double bodyRadius, const Target& tar
   thread_local std::vector<CellSpan> columnSpans;
   const double widest = 1.02 * reachOf(layer.largestDiameter());
   for (int face = 0; face < 6; ++face) {
-    const auto [columns, rows] = target.cells(face, widest, layer.cellsPerFace);
+    const FaceView& view = target.viewOf(face);
+    const auto [columns, rows] = view.cells(widest, layer.cellsPerFace);
     if (columns.empty()) continue;
-    const FaceView view = target.viewOf(face);
     columnSpans.clear();
     for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
       CellSpan rowSpan = cellSpan(layer, row);
@@ -223,9 +227,11 @@ void forEachSite(const FeatureLayer& layer, double bodyRadius, const Target& tar
         if (view.isBeyond({columnSpan.start + inset, columnSpan.start + columnSpan.width - inset},
                           {rowSpan.start + inset, rowSpan.start + rowSpan.width - inset}, reach))
           continue;
-        if (placeSite(layer, bodyRadius, cell, columnSpan, rowSpan, site) &&
-            target.touchedFrom(site.direction, bodyRadius, reach))
-          visit(site);
+        if (!placeSite(layer, bodyRadius, columnSpan, rowSpan, site) ||
+            view.isBeyond({site.s, site.s}, {site.t, site.t}, reach))
+          continue;
+        directSite(face, site);
+        if (target.touchedFrom(site.direction, bodyRadius, reach)) visit(site);
       }
     }
   }
@@ -281,9 +287,10 @@ bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::
   site.hash = hash;
   site.diameter = diameterOf(layer, hash);
   CellSpan columnSpan = cellSpan(layer, column), rowSpan = cellSpan(layer, row);
-  if (!isOccupied(layer, cell, hash) || !placeSite(layer, bodyRadius, cell, columnSpan, rowSpan, site)) {
+  if (!isOccupied(layer, cell, hash) || !placeSite(layer, bodyRadius, columnSpan, rowSpan, site)) {
     return false;
   }
+  directSite(face, site);
   out = featureAt(layer, bodyRadius, site);
   return true;
 }
@@ -299,7 +306,7 @@ void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const Target& 
         if (target.touchedFrom(f.center, 1.0, f.reach)) out.push_back(f);
       });
 }
-template void gatherFeatures(const FeatureLayer&, double, const BallTarget&, std::vector<Feature>&);
+template void gatherFeatures(const FeatureLayer&, double, const PatchTarget&, std::vector<Feature>&);
 template void gatherFeatures(const FeatureLayer&, double, const RowTarget&, std::vector<Feature>&);
 
 Halo makeHalo(const Feature& crater, double brightness, double rays) noexcept {
@@ -314,17 +321,17 @@ Halo makeHalo(const Feature& crater, double brightness, double rays) noexcept {
   return h;
 }
 
-void gatherHalos(const FeatureLayer& layer, double bodyRadius, const BallTarget& ball, std::vector<Halo>& out) {
+void gatherHalos(const FeatureLayer& layer, double bodyRadius, const PatchTarget& patch, std::vector<Halo>& out) {
   if (!layer.hasHalos()) return;
   forEachSite(
-      layer, bodyRadius, ball, [&](std::uint64_t hash) { return wearOf(layer, hash) < kHaloWear; },
+      layer, bodyRadius, patch, [&](std::uint64_t hash) { return wearOf(layer, hash) < kHaloWear; },
       [](double diameter) { return 0.5 * diameter * kHaloRadii * (1 + 1e-5); },
       [&](const Site& site) {
         const double youth = 1 - wearOf(layer, site.hash) / kHaloWear;
         // Of many halos few are bright.
         const double brightness = (layer.exponent >= 4 ? 0.08 : 0.03) * youth * youth;
         const Halo h = makeHalo(featureAt(layer, bodyRadius, site), brightness, 0.25 * youth);
-        if (ball.touchedFrom(h.center, 1.0, h.reach)) out.push_back(h);
+        if (patch.touchedFrom(h.center, 1.0, h.reach)) out.push_back(h);
       });
 }
 

@@ -76,13 +76,13 @@ struct LayerSettings {
 };
 std::vector<FeatureLayer> makeLayers(const LayerSettings& settings);
 
-/// Appends every feature of the layer that may reach the target (a BallTarget or a RowTarget), in the order face, row,
+/// Appends every feature of the layer that may reach the target (a PatchTarget or a RowTarget), in the order face, row,
 /// column.
 template <class Target>
 void gatherFeatures(const FeatureLayer& layer, double bodyRadius, const Target& target, std::vector<Feature>& out);
 
 /// In the same way the halos of the layer's craters.
-void gatherHalos(const FeatureLayer& layer, double bodyRadius, const BallTarget& ball, std::vector<Halo>& out);
+void gatherHalos(const FeatureLayer& layer, double bodyRadius, const PatchTarget& patch, std::vector<Halo>& out);
 
 /// The feature of one cell, if it has one.
 bool featureOfCell(const FeatureLayer& layer, double bodyRadius, int face, std::uint32_t column, std::uint32_t row,

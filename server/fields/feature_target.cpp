@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/numerics/strict_math.h"
 #include "common/tiling/cube_sphere.h"
@@ -11,17 +12,19 @@ namespace {
 
 double dot(const glm::dvec3& a, const double b[3]) noexcept { return a.x * b[0] + a.y * b[1] + a.z * b[2]; }
 
-/// Cells between two tangents of face angles.
+/// Cells between two face angles.
 CellRange cellsBetween(double low, double high, std::uint32_t cells) noexcept {
   if (low > 1 || high < -1) return {};
   const double scale = 0.5 * static_cast<double>(cells);
   // A little slack absorbs the rounding of atan.
-  const double first = std::floor((atanQuarterPi(std::clamp(low, -1.0, 1.0)) + 1) * scale - 1e-3);
-  const double last = std::floor((atanQuarterPi(std::clamp(high, -1.0, 1.0)) + 1) * scale + 1e-3);
+  const double first = std::floor((std::max(low, -1.0) + 1) * scale - 1e-3);
+  const double last = std::floor((std::min(high, 1.0) + 1) * scale + 1e-3);
   const double top = static_cast<double>(cells - 1);
   return {static_cast<std::uint32_t>(std::clamp(first, 0.0, top)),
           static_cast<std::uint32_t>(std::clamp(last, 0.0, top))};
 }
+
+double angleOf(double tangent) noexcept { return atanQuarterPi(std::clamp(tangent, -1.0, 1.0)); }
 
 /// Cells along one face axis that a ball may touch: the ball's box, projected from the body's centre. along, outward:
 /// the ball's centre.
@@ -33,65 +36,134 @@ CellRange cellsOfBall(double along, double outward, double reach, std::uint32_t 
     low = (along - reach) / (along - reach < 0 ? nearest : farthest);
     high = (along + reach) / (along + reach < 0 ? farthest : nearest);
   }
-  return cellsBetween(low, high, cells);
+  if (low > 1 || high < -1) return {};
+  return cellsBetween(angleOf(low), angleOf(high), cells);
 }
 
-/// The tangents of face angles along one axis of all that is near some points.
-struct TangentRange {
-  double low = 1, high = -1;
-
-  /// Of what is within reach of a point: with X = along / outward, another point q has
-  ///   Xq - X = ((q - p) . u - X (q - p) . n) / (q . n),
-  /// so |Xq - X| <= reach sqrt(1 + X^2) / (outward - reach).
-  void add(double along, double outward, double reach) noexcept {
-    const double tangent = along / outward;
-    const double most = reach * std::sqrt(1 + tangent * tangent) / (outward - reach);
-    low = std::min(low, tangent - most);
-    high = std::max(high, tangent + most);
-  }
-};
-
-CellRange common(const CellRange& a, const CellRange& b) noexcept {
-  return {std::max(a.first, b.first), std::min(a.last, b.last)};
-}
+constexpr double kRadians = 0.7853981633974483;  ///< in a face angle
+/// Further round from the face's middle, angles are not computed.
+constexpr double kMostTangent = 2;
 
 }  // namespace
 
+void FaceView::AxisView::add(double along, double outward) noexcept {
+  const double tangent = along / outward;
+  tangents.low = std::min(tangents.low, tangent);
+  tangents.high = std::max(tangents.high, tangent);
+}
+
+void FaceView::AxisView::close(double slack) noexcept {
+  const double more = slack * (tangents.high - tangents.low);
+  tangents = {tangents.low - more, tangents.high + more};
+  angles = {atanQuarterPi(tangents.low), atanQuarterPi(tangents.high)};
+}
+
+FaceView::FaceView(int face, const Ball& ball) noexcept
+    : face_(face), outward_(dot(cubeFaceAxes(face).normal, ball.center)), ballRadius_(ball.radius) {
+  u_.middle = dot(cubeFaceAxes(face).u, ball.center);
+  v_.middle = dot(cubeFaceAxes(face).v, ball.center);
+  if (!(outward_ > 0 && std::max(std::fabs(u_.middle), std::fabs(v_.middle)) <= kMostTangent * outward_)) return;
+  aroundAngles_ = ball.radius;
+  for (AxisView* const axis : {&u_, &v_}) {
+    axis->tangents.low = axis->tangents.high = axis->middle / outward_;
+    axis->close(0);
+    axis->circleRadius = std::sqrt(outward_ * outward_ + axis->middle * axis->middle);
+  }
+}
+
+FaceView::FaceView(int face, const PointSet& points, double slack) noexcept : FaceView(face, points.ball) {
+  const FaceAxes& axes = cubeFaceAxes(face);
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  AxisView u{u_.middle, 0, {kNone, -kNone}}, v{v_.middle, 0, {kNone, -kNone}};
+  double squareU = kNone, squareV = kNone;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double point[3] = {points.x[i], points.y[i], points.z[i]};
+    const double outward = dot(axes.normal, point), alongU = dot(axes.u, point), alongV = dot(axes.v, point);
+    if (!(outward > 0 && std::max(std::fabs(alongU), std::fabs(alongV)) <= kMostTangent * outward)) return;
+    u.add(alongU, outward);
+    v.add(alongV, outward);
+    squareU = std::min(squareU, outward * outward + alongU * alongU);
+    squareV = std::min(squareV, outward * outward + alongV * alongV);
+  }
+  u.close(slack);
+  v.close(slack);
+  u.circleRadius = std::sqrt(squareU) * points.scale * (1 - 1e-9);
+  v.circleRadius = std::sqrt(squareV) * points.scale * (1 - 1e-9);
+  u_ = u;
+  v_ = v;
+  aroundAngles_ = 0;
+}
+
+CellRange FaceView::AxisView::cells(double outward, double within, double reach,
+                                    std::uint32_t cellsPerFace) const noexcept {
+  const double sine = reach / circleRadius;
+  if (!(circleRadius > 0 && sine <= 0.5)) return cellsOfBall(middle, outward, within, cellsPerFace);
+  const double margin = sine * (1 + 0.2 * sine * sine) / kRadians;  // asin(x) <= x (1 + 0.2 x^2) for x <= 1/2
+  return cellsBetween(angles.low - margin, angles.high + margin, cellsPerFace);
+}
+
+CellBlock FaceView::cells(double reach, std::uint32_t cellsPerFace) const noexcept {
+  const double within = ballRadius_ + reach;
+  if (outward_ + within < 0) return {};
+  return {u_.cells(outward_, within, aroundAngles_ + reach, cellsPerFace),
+          v_.cells(outward_, within, aroundAngles_ + reach, cellsPerFace)};
+}
+
+bool FaceView::AxisView::isBeyond(const AngleSpan& at, double reach) const noexcept {
+  const double off = std::max(angles.low - at.high, at.low - angles.high);
+  if (!(off > 0 && off < 2)) return false;
+  const double radians = off * kRadians;
+  return circleRadius * radians * (1 - radians * radians * (1.0 / 6.0)) > reach;  // sin x >= x - x^3 / 6
+}
+
 bool FaceView::isBeyond(const AngleSpan& u, const AngleSpan& v, double reach) const noexcept {
-  const auto isOff = [&](double angle, const AngleSpan& span, double circleRadius) {
-    const double off = std::max(span.low - angle, angle - span.high);
-    if (!(off > 0 && off < 2)) return false;
-    const double radians = off * 0.7853981633974483;
-    return circleRadius * radians * (1 - radians * radians * (1.0 / 6.0)) > radius + reach;  // sin x >= x - x^3 / 6
-  };
-  return isOff(angleU, u, circleRadiusU) || isOff(angleV, v, circleRadiusV);
+  return u_.isBeyond(u, aroundAngles_ + reach) || v_.isBeyond(v, aroundAngles_ + reach);
 }
 
-FaceView BallTarget::viewOf(int face) const noexcept {
-  const FaceAxes& axes = cubeFaceAxes(face);
-  const double outward = dot(axes.normal, ball_.center), u = dot(axes.u, ball_.center), v = dot(axes.v, ball_.center);
-  // Further round, the angles are not computed, and the circles stay 0: nothing is beyond.
-  if (!(outward > 0 && std::max(std::fabs(u), std::fabs(v)) <= 2 * outward)) return {};
-  return {ball_.radius, atanQuarterPi(u / outward), atanQuarterPi(v / outward), std::sqrt(outward * outward + u * u),
-          std::sqrt(outward * outward + v * v)};
+bool FaceView::holds(const PointSet& points) const noexcept {
+  if (aroundAngles_ > 0 || !(u_.circleRadius > 0)) return true;
+  const FaceAxes& axes = cubeFaceAxes(face_);
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double point[3] = {points.x[i], points.y[i], points.z[i]};
+    const double outward = dot(axes.normal, point), u = dot(axes.u, point), v = dot(axes.v, point);
+    const bool within = u_.tangents.low * outward <= u && u <= u_.tangents.high * outward &&
+                        v_.tangents.low * outward <= v && v <= v_.tangents.high * outward;
+    if (!(outward > 0 && within)) return false;
+  }
+  return true;
 }
 
-CellBlock BallTarget::cells(int face, double reach, std::uint32_t cellsPerFace) const noexcept {
-  const FaceAxes& axes = cubeFaceAxes(face);
-  const double within = ball_.radius + reach, outward = dot(axes.normal, ball_.center);
-  if (outward + within < 0) return {};
-  return {cellsOfBall(dot(axes.u, ball_.center), outward, within, cellsPerFace),
-          cellsOfBall(dot(axes.v, ball_.center), outward, within, cellsPerFace)};
-}
+PatchTarget::PatchTarget(const Ball& ball) noexcept
+    : ball_(ball), views_{FaceView(0, ball), FaceView(1, ball), FaceView(2, ball),
+                          FaceView(3, ball), FaceView(4, ball), FaceView(5, ball)} {}
 
-bool BallTarget::touchedFrom(const double at[3], double scale, double reach) const noexcept {
+PatchTarget::PatchTarget(const PointSet& points, double slack) noexcept
+    : ball_(points.ball), views_{FaceView(0, points, slack), FaceView(1, points, slack), FaceView(2, points, slack),
+                                 FaceView(3, points, slack), FaceView(4, points, slack), FaceView(5, points, slack)} {}
+
+bool PatchTarget::touchedFrom(const double at[3], double scale, double reach) const noexcept {
   const double dx = at[0] * scale - ball_.center[0], dy = at[1] * scale - ball_.center[1],
                dz = at[2] * scale - ball_.center[2];
   const double limit = ball_.radius + reach;
   return dx * dx + dy * dy + dz * dz <= limit * limit;
 }
 
-RowTarget::RowTarget(const PointSet& points) noexcept : points_(points), ball_(points.ball) {
+bool PatchTarget::holds(const PointSet& points) const noexcept {
+  const double limit = ball_.radius * ball_.radius;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const double dx = points.x[i] * points.scale - ball_.center[0], dy = points.y[i] * points.scale - ball_.center[1],
+                 dz = points.z[i] * points.scale - ball_.center[2];
+    if (!(dx * dx + dy * dy + dz * dz <= limit)) return false;
+  }
+  return std::all_of(views_.begin(), views_.end(), [&](const FaceView& view) { return view.holds(points); });
+}
+
+RowTarget::RowTarget(const PointSet& points) noexcept : patch_(points, 0) {
+  const auto pointAt = [&](std::size_t index, double out[3]) {
+    out[0] = points.x[index] * points.scale;
+    out[1] = points.y[index] * points.scale;
+    out[2] = points.z[index] * points.scale;
+  };
   double end[3];
   pointAt(0, start_);
   pointAt(points.count - 1, end);
@@ -101,24 +173,13 @@ RowTarget::RowTarget(const PointSet& points) noexcept : points_(points), ball_(p
     square += along_[a] * along_[a];
   }
   if (square > 0) inverseSquareLength_ = 1 / square;
-  double farthest = 0, widest = 0, kept[3] = {};
+  double farthest = 0;
   for (std::size_t i = 0; i < points.count; ++i) {
     double point[3];
     pointAt(i, point);
-    if (i % kStride == 0) std::copy(point, point + 3, kept);
-    double gap = 0;
-    for (int a = 0; a < 3; ++a) gap += (point[a] - kept[a]) * (point[a] - kept[a]);
-    widest = std::max(widest, gap);
     farthest = std::max(farthest, squareDistanceFromLine(point));
   }
   bulge_ = std::sqrt(farthest) * (1 + 1e-9);
-  gap_ = std::sqrt(widest) * (1 + 1e-9);
-}
-
-void RowTarget::pointAt(std::size_t index, double out[3]) const noexcept {
-  out[0] = points_.x[index] * points_.scale;
-  out[1] = points_.y[index] * points_.scale;
-  out[2] = points_.z[index] * points_.scale;
 }
 
 double RowTarget::squareDistanceFromLine(const double point[3]) const noexcept {
@@ -133,28 +194,10 @@ double RowTarget::squareDistanceFromLine(const double point[3]) const noexcept {
   return square;
 }
 
-CellBlock RowTarget::cells(int face, double reach, std::uint32_t cellsPerFace) const noexcept {
-  const CellBlock around = ball_.cells(face, reach, cellsPerFace);
-  if (around.empty()) return around;
-  const FaceAxes& axes = cubeFaceAxes(face);
-  TangentRange u, v;
-  const double within = reach + gap_;
-  for (std::size_t i = 0; i < points_.count; i += kStride) {
-    double point[3];
-    pointAt(i, point);
-    const double outward = dot(axes.normal, point);
-    if (!(outward > 2 * within)) return around;  // at the rim of the face's hemisphere
-    u.add(dot(axes.u, point), outward, within);
-    v.add(dot(axes.v, point), outward, within);
-  }
-  return {common(around.columns, cellsBetween(u.low, u.high, cellsPerFace)),
-          common(around.rows, cellsBetween(v.low, v.high, cellsPerFace))};
-}
-
 bool RowTarget::touchedFrom(const double at[3], double scale, double reach) const noexcept {
   const double point[3] = {at[0] * scale, at[1] * scale, at[2] * scale};
   const double limit = bulge_ + reach;
-  return squareDistanceFromLine(point) <= limit * limit && ball_.touchedFrom(at, scale, reach);
+  return squareDistanceFromLine(point) <= limit * limit && patch_.touchedFrom(at, scale, reach);
 }
 
 }  // namespace terrane::lunar

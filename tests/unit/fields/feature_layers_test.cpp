@@ -21,7 +21,7 @@ glm::dvec3 centerOf(const Feature& f) { return {f.center[0], f.center[1], f.cent
 
 void gather(const FeatureLayer& layer, const glm::dvec3& at, double radius, std::vector<Feature>& out) {
   out.clear();
-  gatherFeatures(layer, kMoonRadius, BallTarget({{at.x, at.y, at.z}, radius}), out);
+  gatherFeatures(layer, kMoonRadius, PatchTarget(Ball{{at.x, at.y, at.z}, radius}), out);
 }
 
 /// A feature's bowl or body, with its outline's widest lobe.
@@ -126,7 +126,7 @@ TEST(FeatureLayers, ARowFindsWhatTouchesItsPointsInTheOrderOfTheBall) {
       const glm::dvec3 middle = glm::normalize(start + end) * kMoonRadius;
       const Ball ball{{middle.x, middle.y, middle.z}, 1.001 * glm::distance(middle, start * kMoonRadius)};
       std::vector<Feature> ofBall, ofRow;
-      gatherFeatures(layer, kMoonRadius, BallTarget(ball), ofBall);
+      gatherFeatures(layer, kMoonRadius, PatchTarget(ball), ofBall);
       gatherFeatures(layer, kMoonRadius, RowTarget({x.data(), y.data(), z.data(), x.size(), kMoonRadius, ball}), ofRow);
       std::size_t next = 0;
       for (const Feature& f : ofBall) {
@@ -158,8 +158,8 @@ TEST(FeatureLayers, HalosAreThoseOfTheYoungestCratersFromEveryBall) {
       const glm::dvec3 inside = glm::normalize(at + 2 * size * randomDirection(random)) * kMoonRadius;
       std::vector<Halo> wide, narrow;
       std::vector<Feature> craters;
-      gatherHalos(layer, kMoonRadius, BallTarget({{at.x, at.y, at.z}, ball}), wide);
-      gatherHalos(layer, kMoonRadius, BallTarget({{inside.x, inside.y, inside.z}, size}), narrow);
+      gatherHalos(layer, kMoonRadius, PatchTarget(Ball{{at.x, at.y, at.z}, ball}), wide);
+      gatherHalos(layer, kMoonRadius, PatchTarget(Ball{{inside.x, inside.y, inside.z}, size}), narrow);
       gather(layer, at, ball, craters);
       std::erase_if(craters, [&](const Feature& f) { return glm::distance(centerOf(f), at) > ball; });
       std::size_t expected = 0;

@@ -22,7 +22,7 @@ std::vector<Halo> brightHalos(int exponent, std::size_t count) {
     near.clear();
     for (const FeatureLayer& layer : layers)
       if (layer.exponent == exponent)
-        gatherHalos(layer, kMoonRadius, BallTarget({{at.x, at.y, at.z}, 20 * layer.largestDiameter()}), near);
+        gatherHalos(layer, kMoonRadius, PatchTarget(Ball{{at.x, at.y, at.z}, 20 * layer.largestDiameter()}), near);
     for (const Halo& h : near)
       if (h.brightness > 0.04f && bright.size() < count) bright.push_back(h);
   }
