@@ -20,7 +20,7 @@ namespace terrane {
 
 /// Raise when the bytes of any tile change for reasons that no setting shows: the golden hashes refuse a change without
 /// it.
-inline constexpr int kGeneratorVersion = 8;
+inline constexpr int kGeneratorVersion = 9;
 
 struct WireSettings {
   int cellsPerEdge = 64;  ///< a power of two, 2 to 128

@@ -22,17 +22,27 @@ struct FarPolynomial {
 using FarHeight = FarPolynomial<double, kFarHeightDegree>;
 using FarSlope = FarPolynomial<float, kFarSlopeDegree>;
 
+/// What is on top over all of a patch and by more than the blend of the two, so that the other need not be known: then
+/// relief is the height of what is on top, young is all that is far beside it, rough is near alone, and the slopes of
+/// relief are those of all that is far. See far_ground.h.
+enum class FarGround : std::uint8_t { Mixed, Land, Lava };
+
 struct FarExpansion {
   double origin[3];
   double alongA[3], alongB[3];  ///< a = alongA . (position - origin), b likewise; both within -1..1 on the patch
   FarHeight relief, lava, dry, young, rough, last, sum;
   FarSlope reliefX, reliefY, reliefZ, lavaX, lavaY, lavaZ, dryX, dryY, dryZ, youngX, youngY, youngZ;
   FarSlope roughX, roughY, roughZ, lastX, lastY, lastZ, sumX, sumY, sumZ, bright, mottle;
+
+  FarGround ground;
+  /// Of ground that is not mixed: what regolith is scaled by, and the reflectance of level ground at relief 0 and what
+  /// each metre of relief adds, before it is mottled.
+  double calm;
+  float tint, tintPerMeter;
 };
 
-/// Calls visit(polynomial, array) for each polynomial of an expansion and the array of a block that it is of; either
-/// may be const.
-///
+/// Calls visit(polynomial, array) for each polynomial of an expansion of mixed ground and the array of a block that
+/// it is of; either may be const.
 template <class Expansion, class Samples, class Visit>
 TERRANE_INLINE void forEachFarHeight(Expansion& far, Samples& b, const Visit& visit) {
   visit(far.relief, b.relief);
@@ -60,6 +70,29 @@ TERRANE_INLINE void forEachFarSlope(Expansion& far, Samples& b, const Visit& vis
   visit(far.roughX, b.roughX);
   visit(far.roughY, b.roughY);
   visit(far.roughZ, b.roughZ);
+  visit(far.lastX, b.lastX);
+  visit(far.lastY, b.lastY);
+  visit(far.lastZ, b.lastZ);
+  visit(far.sumX, b.sumX);
+  visit(far.sumY, b.sumY);
+  visit(far.sumZ, b.sumZ);
+  visit(far.bright, b.bright);
+  visit(far.mottle, b.mottle);
+}
+
+/// The same of ground that is not mixed.
+template <class Expansion, class Samples, class Visit>
+TERRANE_INLINE void forEachPlainHeight(Expansion& far, Samples& b, const Visit& visit) {
+  visit(far.relief, b.relief);
+  visit(far.young, b.young);
+  visit(far.last, b.last);
+  visit(far.sum, b.sum);
+}
+template <class Expansion, class Samples, class Visit>
+TERRANE_INLINE void forEachPlainSlope(Expansion& far, Samples& b, const Visit& visit) {
+  visit(far.reliefX, b.reliefX);
+  visit(far.reliefY, b.reliefY);
+  visit(far.reliefZ, b.reliefZ);
   visit(far.lastX, b.lastX);
   visit(far.lastY, b.lastY);
   visit(far.lastZ, b.lastZ);

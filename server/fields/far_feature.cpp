@@ -1,5 +1,6 @@
 #include "server/fields/far_feature.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -115,7 +116,34 @@ double missedShare(double distance, const Ball& patch) noexcept {
   return share <= 1 ? sixthPower(share) : kNever;
 }
 
+/// s over a patch that is not too near.
+Span stretchedOver(const Feature& crater, const Bearing& at, const Ball& patch) noexcept {
+  const double inverseSquared = 1.0 / (crater.radius * crater.radius);
+  const Span square = squareDistance(crater.center, patch), outline = outlineOver(crater, at, patch);
+  return widened(square.low * inverseSquared * (outline.low * outline.low),
+                 square.high * inverseSquared * (outline.high * outline.high));
+}
+
+double peakAt(const Feature& crater, double s) noexcept {
+  const double rest = 1 - s / kPeakRadiusSquared;
+  return rest > 0 ? std::abs(crater.peak) * (rest * rest * rest) : 0;
+}
+
 }  // namespace
+
+HeightSpan craterSpan(const Feature& crater, const Program& program, const Ball& patch) noexcept {
+  const double blend = crater.rimBlend * (1.0 / 6.0);
+  const Bearing at = bearingOf(crater, patch);
+  if (missedShare(at.range, patch) == kNever)
+    return {crater.floor - blend, std::max(crater.rim, crater.floor + crater.floorBlend + std::abs(crater.peak))};
+  const Span s = stretchedOver(crater, at, patch);
+  if (s.low > kApronRadii * kApronRadii) return {};
+  // A rounded minimum of what grows and what falls with s.
+  const Shape<double> shape = shapeOf<double>(crater, program);
+  const double low = std::min(innerAt(shape, s.low), apronAt(shape, s.high)) - blend;
+  const double high = std::min(innerAt(shape, s.high) + peakAt(crater, s.low), apronAt(shape, s.low));
+  return {std::min(low, 0.0), std::max(high, 0.0)};
+}
 
 double farCraterError(const Feature& crater, const Program& program, const Ball& patch) noexcept {
   const Bearing at = bearingOf(crater, patch);
@@ -123,11 +151,7 @@ double farCraterError(const Feature& crater, const Program& program, const Ball&
   if (missed == kNever) return kNever;
   const Shape<double> shape = shapeOf<double>(crater, program);
   if (shape.shown < 1) return kNever;
-  const double inverseSquared = 1.0 / (crater.radius * crater.radius);
-  const Span square = squareDistance(crater.center, patch), outline = outlineOver(crater, at, patch);
-  const Span s = widened(square.low * inverseSquared * (outline.low * outline.low),
-                         square.high * inverseSquared * (outline.high * outline.high));
-  switch (pieceOver(shape, s)) {
+  switch (pieceOver(shape, stretchedOver(crater, at, patch))) {
     case Piece::None:
       return kNever;
     case Piece::Beyond:
@@ -145,6 +169,7 @@ double farBasinError(const Basin& basin, const Ball& patch) noexcept {
   const double radiusSquared = 1.0 / basin.inverseRadiusSquared;
   for (const double joint : {1.0 - kBasinRingHalfWidth, 1.0, 1.0 + kBasinRingHalfWidth})
     if (square.crosses(joint * radiusSquared)) return kNever;
+  if (square.low > (1.0 + kBasinRingHalfWidth) * radiusSquared) return 0;
   return kFarBasinError * (basin.depth + basin.ring) * missedShare(std::sqrt(radiusSquared), patch);
 }
 
@@ -152,6 +177,8 @@ double farLavaPatchError(const LavaPatch& lava, double heightMeters, const Ball&
   const Span square = squareDistance(lava.center, patch);
   const double reachSquared = 1.0 / lava.inverseReachSquared;
   if (square.crosses(reachSquared) || square.crosses(lava.innerSquared * reachSquared)) return kNever;
+  const bool isOnRamp = square.low > lava.innerSquared * reachSquared && square.high < reachSquared;
+  if (!isOnRamp) return 0;
   return kFarLavaError * heightMeters * missedShare(std::sqrt(reachSquared), patch);
 }
 

@@ -26,6 +26,12 @@ inline constexpr double kLeastFarFeatureRadii = 3;
 /// profile: joints are rounded to the footprint, and what is shown in part is not far.
 double farCraterError(const Feature& crater, const Program& program, const Ball& patch) noexcept;
 double farBasinError(const Basin& basin, const Ball& patch) noexcept;
+/// What a crater, shown in whole or in part, adds to heights on the patch lies between these and 0, metres.
+struct HeightSpan {
+  double low = 0, high = 0;
+};
+HeightSpan craterSpan(const Feature& crater, const Program& program, const Ball& patch) noexcept;
+
 /// heightMeters: from the lava's lowest level to its full one.
 double farLavaPatchError(const LavaPatch& lava, double heightMeters, const Ball& patch) noexcept;
 

@@ -200,6 +200,12 @@ void FarField::takeHalos(const Program& whole, bool far, Part& out) const {
   }
 }
 
+void FarField::floodNear(Part& near) {
+  NoiseGroup& relief = near.groups.front();
+  for (std::size_t k = 0; k < relief.count; ++k) near.octaves[k].amplitude = near.octaves[k].lavaAmplitude;
+  std::erase_if(near.runs, [](const FeatureRun& run) { return run.stage == FeatureStage::OldCrater; });
+}
+
 Program FarField::farOf(const Program& whole) {
   far_.clear();
   takeOctaves(whole, true, far_);
@@ -219,6 +225,7 @@ Program FarField::nearOf(const Program& whole, const FarExpansion& expansion) {
   takeLandmarks(whole, false, near_);
   takeCraters(whole, false, near_);
   if (!whole.heightsOnly) takeHalos(whole, false, near_);
+  if (expansion.ground == FarGround::Lava) floodNear(near_);
   Program program = whole;
   near_.apply(program);
   program.far = &expansion;

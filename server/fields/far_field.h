@@ -35,8 +35,10 @@ class FarField {
   /// left of it, or of one of the levels beside it, of which heights alone are wanted. Each valid until the next call
   /// of it.
   Program farOf(const Program& whole);
+  /// Under lava that is known to cover all, nothing is.
   Program nearOf(const Program& whole, const FarExpansion& expansion);
 
+  const FarPatch& patch() const noexcept { return patch_; }
   /// Of heights, by what was chosen and what farOf took.
   double errorMeters() const noexcept { return octaveError_ + featureError_; }
 
@@ -73,6 +75,8 @@ class FarField {
   double takeLandmarks(const Program& whole, bool far, Part& out) const;
   double takeCraters(const Program& whole, bool far, Part& out) const;
   void takeHalos(const Program& whole, bool far, Part& out) const;
+  /// Leaves of what is near only the lava's octaves, as relief, and what is younger.
+  static void floodNear(Part& near);
 
   FarPatch patch_;
   const NoiseOctave* table_ = nullptr;

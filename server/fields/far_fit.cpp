@@ -67,6 +67,7 @@ void fit(const Real* values, FarPolynomial<Real, kDegree>& out) noexcept {
 }  // namespace
 
 void fitExpansion(const FarPatch& patch, const Block& nodes, FarExpansion& out) noexcept {
+  out.ground = FarGround::Mixed;
   for (int i = 0; i < 3; ++i) {
     out.origin[i] = patch.origin[i];
     out.alongA[i] = patch.axisA[i] / patch.halfA;

@@ -46,12 +46,6 @@ constexpr double kMostTangent = 2;
 
 }  // namespace
 
-void FaceView::AxisView::add(double along, double outward) noexcept {
-  const double tangent = along / outward;
-  tangents.low = std::min(tangents.low, tangent);
-  tangents.high = std::max(tangents.high, tangent);
-}
-
 void FaceView::AxisView::close(double slack) noexcept {
   const double more = slack * (tangents.high - tangents.low);
   tangents = {tangents.low - more, tangents.high + more};
@@ -71,26 +65,63 @@ FaceView::FaceView(int face, const Ball& ball) noexcept
   }
 }
 
-FaceView::FaceView(int face, const PointSet& points, double slack) noexcept : FaceView(face, points.ball) {
+namespace {
+
+/// Points side by side: compilers do not make vectors of the comparisons of doubles.
+constexpr std::size_t kLanes = 2;
+typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
+
+/// The least of measures of points.
+class Least {
+ public:
+  void add(const Lanes& v) noexcept { least_ = v < least_ ? v : least_; }
+  double value() const noexcept { return std::min(least_[0], least_[1]); }
+
+ private:
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  Lanes least_ = {kNone, kNone};
+};
+
+/// Calls visit(outward, u, v) for all points in the face's axes, some of them twice.
+template <class Visit>
+void forEachOnFace(int face, const PointSet& points, const Visit& visit) noexcept {
   const FaceAxes& axes = cubeFaceAxes(face);
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  AxisView u{u_.middle, 0, {kNone, -kNone}}, v{v_.middle, 0, {kNone, -kNone}};
-  double squareU = kNone, squareV = kNone;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const double point[3] = {points.x[i], points.y[i], points.z[i]};
-    const double outward = dot(axes.normal, point), alongU = dot(axes.u, point), alongV = dot(axes.v, point);
-    if (!(outward > 0 && std::max(std::fabs(alongU), std::fabs(alongV)) <= kMostTangent * outward)) return;
-    u.add(alongU, outward);
-    v.add(alongV, outward);
-    squareU = std::min(squareU, outward * outward + alongU * alongU);
-    squareV = std::min(squareV, outward * outward + alongV * alongV);
+  for (std::size_t i = 0; i < points.count; i += kLanes) {
+    const std::size_t a = i, b = std::min(i + 1, points.count - 1);
+    const Lanes x = {points.x[a], points.x[b]}, y = {points.y[a], points.y[b]}, z = {points.z[a], points.z[b]};
+    const auto along = [&](const glm::dvec3& axis) { return axis.x * x + axis.y * y + axis.z * z; };
+    visit(along(axes.normal), along(axes.u), along(axes.v));
   }
-  u.close(slack);
-  v.close(slack);
-  u.circleRadius = std::sqrt(squareU) * points.scale * (1 - 1e-9);
-  v.circleRadius = std::sqrt(squareV) * points.scale * (1 - 1e-9);
-  u_ = u;
-  v_ = v;
+}
+
+}  // namespace
+
+FaceView::FaceView(int face, const PointSet& points, double slack) noexcept : FaceView(face, points.ball) {
+  if (!(u_.circleRadius > 0)) return;  // most faces: the ball's middle is too far round
+  Least outwards, room, lowU, lowV, highU, highV, squareU, squareV;
+  forEachOnFace(face, points, [&](const Lanes& outward, const Lanes& u, const Lanes& v) {
+    const Lanes tangentU = u / outward, tangentV = v / outward, square = outward * outward,
+                most = kMostTangent * outward;
+    outwards.add(outward);
+    room.add(most - u);
+    room.add(most + u);
+    room.add(most - v);
+    room.add(most + v);
+    lowU.add(tangentU);
+    highU.add(-tangentU);
+    lowV.add(tangentV);
+    highV.add(-tangentV);
+    squareU.add(square + u * u);
+    squareV.add(square + v * v);
+  });
+  if (!(outwards.value() > 0 && room.value() >= 0)) return;
+  const auto take = [&](const Least& low, const Least& high, const Least& square, AxisView& axis) {
+    axis.tangents = {low.value(), -high.value()};
+    axis.close(slack);
+    axis.circleRadius = std::sqrt(square.value()) * points.scale * (1 - 1e-9);
+  };
+  take(lowU, highU, squareU, u_);
+  take(lowV, highV, squareV, v_);
   aroundAngles_ = 0;
 }
 
@@ -122,15 +153,15 @@ bool FaceView::isBeyond(const AngleSpan& u, const AngleSpan& v, double reach) co
 
 bool FaceView::holds(const PointSet& points) const noexcept {
   if (aroundAngles_ > 0 || !(u_.circleRadius > 0)) return true;
-  const FaceAxes& axes = cubeFaceAxes(face_);
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const double point[3] = {points.x[i], points.y[i], points.z[i]};
-    const double outward = dot(axes.normal, point), u = dot(axes.u, point), v = dot(axes.v, point);
-    const bool within = u_.tangents.low * outward <= u && u <= u_.tangents.high * outward &&
-                        v_.tangents.low * outward <= v && v <= v_.tangents.high * outward;
-    if (!(outward > 0 && within)) return false;
-  }
-  return true;
+  Least room;
+  forEachOnFace(face_, points, [&](const Lanes& outward, const Lanes& u, const Lanes& v) {
+    room.add(outward);
+    room.add(u - u_.tangents.low * outward);
+    room.add(u_.tangents.high * outward - u);
+    room.add(v - v_.tangents.low * outward);
+    room.add(v_.tangents.high * outward - v);
+  });
+  return room.value() >= 0;
 }
 
 PatchTarget::PatchTarget(const Ball& ball) noexcept

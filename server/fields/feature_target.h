@@ -59,7 +59,6 @@ class FaceView {
     double middle = 0;        ///< metres, of the ball's centre
     double circleRadius = 0;  ///< metres, the least; 0: no angles are known
     AngleSpan tangents{0, 0}, angles{0, 0};
-    void add(double along, double outward) noexcept;
     void close(double slack) noexcept;
     CellRange cells(double outward, double within, double reach, std::uint32_t cellsPerFace) const noexcept;
     bool isBeyond(const AngleSpan& at, double reach) const noexcept;

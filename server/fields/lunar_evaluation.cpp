@@ -8,6 +8,7 @@
 #include "common/tiling/tile_grid.h"
 #include "server/fields/far_field.h"
 #include "server/fields/far_fit.h"
+#include "server/fields/far_ground.h"
 #include "server/fields/lunar_field.h"
 #include "server/fields/sample_blocks.h"
 
@@ -49,14 +50,6 @@ double farthestFrom(const double center[3], const double* x, const double* y, co
   return std::sqrt(*std::max_element(squares, squares + kLanes)) * (1 + 1e-9);
 }
 
-/// Of samples near each other: about the middle between the first and the last.
-Ball ballAround(const double* x, const double* y, const double* z, std::size_t count) noexcept {
-  const std::size_t last = count - 1;
-  Ball ball{{0.5 * (x[0] + x[last]), 0.5 * (y[0] + y[last]), 0.5 * (z[0] + z[last])}, 0};
-  ball.radius = farthestFrom(ball.center, x, y, z, count);
-  return ball;
-}
-
 /// The middle of the least and the largest.
 double middleOf(const double* v, std::size_t count) noexcept {
   double low[kLanes], high[kLanes];
@@ -81,30 +74,6 @@ Ball boundingBall(const double* x, const double* y, const double* z, std::size_t
   for (double& c : ball.center) c *= radius;
   ball.radius = (ball.radius + 1e-9) * radius;
   return ball;
-}
-
-void boundBlock(Block& block) noexcept {
-  double low[3], high[3];
-  for (std::size_t chunk = 0; chunk * kChunk < block.count; ++chunk) {
-    const std::size_t at = chunk * kChunk;
-    const Ball part = ballAround(block.x + at, block.y + at, block.z + at, kChunk);
-    block.chunkRadius[chunk] = part.radius;
-    for (int a = 0; a < 3; ++a) {
-      block.chunkCenter[chunk][a] = part.center[a];
-      low[a] = chunk == 0 ? part.center[a] : std::min(low[a], part.center[a]);
-      high[a] = chunk == 0 ? part.center[a] : std::max(high[a], part.center[a]);
-    }
-  }
-  for (int a = 0; a < 3; ++a) block.center[a] = 0.5 * (low[a] + high[a]);
-  block.radius = 0;
-  for (std::size_t chunk = 0; chunk * kChunk < block.count; ++chunk) {
-    double square = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double d = block.chunkCenter[chunk][a] - block.center[a];
-      square += d * d;
-    }
-    block.radius = std::max(block.radius, std::sqrt(square) * (1 + 1e-9) + block.chunkRadius[chunk]);
-  }
 }
 
 }  // namespace
@@ -160,7 +129,10 @@ class LunarField::Evaluation {
     // Vertices of the border are evaluated in full: other tiles share them, and must come to the same bits.
     const SampleBlocks& parts = blocks(gridOfTile());
     for (std::size_t k = parts.insideCount(); k < parts.count(); ++k) evaluateBlock(parts[k], true);
-    program_ = scratch_.farField.nearOf(program_, scratch_.expansion);
+    const Program whole = program_;
+    program_ = scratch_.farField.nearOf(whole, scratch_.expansion);
+    if (showsAllOldGround()) simplifyGround(program_, scratch_.farField.patch().ball, scratch_.expansion);
+    if (scratch_.expansion.ground == FarGround::Lava) program_ = scratch_.farField.nearOf(whole, scratch_.expansion);
     for (std::size_t k = 0; k < parts.insideCount(); ++k) evaluateBlock(parts[k], true);
   }
 
@@ -177,6 +149,15 @@ class LunarField::Evaluation {
   TileGrid gridOfTile() const noexcept { return {batch_.grid->path.scheme(), batch_.grid->cellsPerEdge}; }
   bool isExpanded() const noexcept {
     return scratch_.expandedFor == field_.features_ && scratch_.expandedPath == batch_.grid->path;
+  }
+  /// Whether no finer level shows more relief or old craters.
+  bool showsAllOldGround() const noexcept {
+    const NoiseGroup& relief = field_.groups_.front();
+    const auto isShown = [&](const FeatureLayer& layer) {
+      return layer.stage != FeatureStage::OldCrater || layer.wavelengthMeters() >= minWavelength_;
+    };
+    return (relief.count == 0 || relief.octaves[relief.count - 1].inverseWavelength * minWavelength_ <= 1) &&
+           std::ranges::all_of(field_.features_->layers, isShown);
   }
   const SampleBlocks& blocks(const std::optional<TileGrid>& grid) {
     constexpr std::size_t kMostShapes = 8;
@@ -245,7 +226,6 @@ class LunarField::Evaluation {
       block.y[i] = p[1];
       block.z[i] = p[2];
     }
-    boundBlock(block);
   }
 
   void evaluateBlock(std::span<const std::uint32_t> samples, bool gathered) {
@@ -255,18 +235,14 @@ class LunarField::Evaluation {
       p[1] = batch_.y[samples[i]] * scale;
       p[2] = batch_.z[samples[i]] * scale;
     });
-    const Block& block = scratch_.block;
     if (!gathered) {
-      if (block.radius > widestBall_ && samples.size() > 1) {
+      const Block& block = scratch_.block;
+      const Ball ball = boundingBall(block.x, block.y, block.z, block.count, 1.0);
+      if (ball.radius > widestBall_ && samples.size() > 1) {
         for (std::size_t i = 0; i < samples.size(); ++i) evaluateBlock(samples.subspan(i, 1), false);
         return;
       }
-      gather({block.x,
-              block.y,
-              block.z,
-              block.count,
-              1.0,
-              {{block.center[0], block.center[1], block.center[2]}, block.radius}});
+      gather({block.x, block.y, block.z, block.count, 1.0, ball});
     }
     field_.evaluateBlock_(program_, scratch_.block);
     store(samples);

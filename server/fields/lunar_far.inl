@@ -42,6 +42,16 @@ struct FarCoordinates {
   alignas(64) float singleA[kBlockCapacity], singleB[kBlockCapacity];
 };
 
+/// What of plain ground is near alone.
+template <Wanted kWanted>
+void clearNear(Block& b) {
+  for (std::size_t i = 0; i < b.count; ++i) {
+    b.rough[i] = 0.0;
+    if constexpr (kWanted == Wanted::Heights) continue;
+    b.youngX[i] = b.youngY[i] = b.youngZ[i] = b.roughX[i] = b.roughY[i] = b.roughZ[i] = 0.0f;
+  }
+}
+
 template <Wanted kWanted>
 void startFromFar(const FarExpansion& far, Block& b) {
   FarCoordinates at;
@@ -60,8 +70,14 @@ void startFromFar(const FarExpansion& far, Block& b) {
       expand(polynomial, at.singleA, at.singleB, b.count, out);
     }
   };
-  forEachFarHeight(far, b, visit);
-  if constexpr (kWanted == Wanted::All) forEachFarSlope(far, b, visit);
+  if (far.ground != FarGround::Mixed) {
+    clearNear<kWanted>(b);
+    forEachPlainHeight(far, b, visit);
+    if constexpr (kWanted == Wanted::All) forEachPlainSlope(far, b, visit);
+  } else {
+    forEachFarHeight(far, b, visit);
+    if constexpr (kWanted == Wanted::All) forEachFarSlope(far, b, visit);
+  }
 }
 
 }  // namespace

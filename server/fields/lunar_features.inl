@@ -123,31 +123,35 @@ void addReached(const Feature& f, float brightness, const Reached<Real>& at, Blo
   }
 }
 
-/// Whether a feature that ends at reach from its centre touches a chunk.
-TERRANE_INLINE bool chunkReaches(const Block& b, std::size_t chunk, const double* center, double reach) {
-  const double* q = b.chunkCenter[chunk];
-  const double dx = q[0] - center[0], dy = q[1] - center[1], dz = q[2] - center[2];
-  const double limit = reach + b.chunkRadius[chunk];
-  return dx * dx + dy * dy + dz * dz <= limit * limit;
+/// Which of a block's chunks what ends so far from a feature's or halo's middle touches: bits by chunk.
+TERRANE_INLINE std::uint32_t chunksWithin(const Block& b, const double* center, double reach) {
+  typedef std::int64_t Bits __attribute__((vector_size(32)));
+  const Lanes *x = reinterpret_cast<const Lanes*>(b.chunkX), *y = reinterpret_cast<const Lanes*>(b.chunkY),
+              *z = reinterpret_cast<const Lanes*>(b.chunkZ), *radius = reinterpret_cast<const Lanes*>(b.chunkRadius);
+  Bits bit = {1, 2, 4, 8}, bits = {};
+  for (std::size_t k = 0; k < kChunkSlots / 4; ++k, bit <<= 4) {
+    const Lanes dx = x[k] - center[0], dy = y[k] - center[1], dz = z[k] - center[2], limit = reach + radius[k];
+    bits |= (dx * dx + dy * dy + dz * dz <= limit * limit) & bit;
+  }
+  const auto all = static_cast<std::uint32_t>((bits[0] | bits[1]) | (bits[2] | bits[3]));
+  return all & ((1u << (b.count / kChunk)) - 1u);
 }
 
-/// The chunks that a feature touches, those that lie beyond innerReach from its centre last.
 template <class Real>
-void findChunks(const Feature& f, double innerReach, const Block& b, Reached<Real>& at) {
-  std::size_t beyond[kBlockChunks];
-  std::size_t inner = 0, outer = 0;
-  for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
-    if (!chunkReaches(b, chunk, f.center, f.reach)) continue;
-    if (chunkReaches(b, chunk, f.center, innerReach)) {
-      at.begins[inner++] = chunk * kChunk;
-    } else {
-      beyond[outer++] = chunk * kChunk;
-    }
-  }
-  for (std::size_t k = 0; k < outer; ++k) at.begins[inner + k] = beyond[k];
-  at.chunkCount = inner + outer;
+TERRANE_INLINE void listChunks(std::uint32_t chunks, Reached<Real>& at) {
+  for (; chunks != 0; chunks &= chunks - 1)
+    at.begins[at.chunkCount++] = static_cast<std::size_t>(__builtin_ctz(chunks)) * kChunk;
+}
+
+/// Those of chunks last that lie beyond innerReach from a feature's middle.
+template <class Real>
+void findChunks(std::uint32_t chunks, const Feature& f, double innerReach, const Block& b, Reached<Real>& at) {
+  const std::uint32_t inner = innerReach < f.reach ? chunks & chunksWithin(b, f.center, innerReach) : chunks;
+  at.chunkCount = 0;
+  listChunks(inner, at);
+  at.ejectaBegin = at.chunkCount * kChunk;
+  listChunks(chunks & ~inner, at);
   at.count = at.chunkCount * kChunk;
-  at.ejectaBegin = inner * kChunk;
 }
 
 template <class Real, FeatureStage Stage, Wanted kWanted>
@@ -157,11 +161,12 @@ void addFeatures(const FeatureRun& run, const Program& program, Block& b) {
   for (std::size_t k = 0; k < run.count; ++k) {
     const Feature& f = run.features[k];
     if (f.radius < program.minWavelength || !reaches(b, f.center, f.reach)) continue;
+    const std::uint32_t chunks = chunksWithin(b, f.center, f.reach);
+    if (chunks == 0) continue;
     const Shape<Real> shape = shapeOf<Real>(f, program);
     // The reach is where the apron ends on the outline's narrowest bearing.
     const double share = kRock ? 1.0 : ejectaFrom<Real>(shape) * (1.0 / kApronRadii);
-    findChunks<Real>(f, share < 1.0 ? share * f.reach : f.reach, b, at);
-    if (at.count == 0) continue;
+    findChunks(chunks, f, share * f.reach, b, at);
     placeSamples(f, b, at);
     outlineSamples(f, at);
     profileSamples<Real, kRock>(shape, at);
@@ -211,11 +216,11 @@ void addHaloToChunk(const Halo& h, float shown, Block& b, std::size_t begin) {
 void addHalos(const HaloRun& run, const Program& program, Block& b) {
   for (std::size_t k = 0; k < run.count; ++k) {
     const Halo& h = run.halos[k];
+    if (!reaches(b, h.center, h.reach)) continue;
     const double shown = shownShare(kHaloRadii * h.radius, program.minWavelength);
-    if (shown <= 0 || !reaches(b, h.center, h.reach)) continue;
-    for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
-      if (chunkReaches(b, chunk, h.center, h.reach)) addHaloToChunk(h, static_cast<float>(shown), b, chunk * kChunk);
-    }
+    if (shown <= 0) continue;
+    for (std::uint32_t chunks = chunksWithin(b, h.center, h.reach); chunks != 0; chunks &= chunks - 1)
+      addHaloToChunk(h, static_cast<float>(shown), b, static_cast<std::size_t>(__builtin_ctz(chunks)) * kChunk);
   }
 }
 

@@ -41,6 +41,26 @@ TERRANE_INLINE float landShare(float height, float slopeX, float slopeY, float s
   return height < 0 ? half : 1.0f - half;
 }
 
+/// A sample's slope along the ground, and its reflectance: its ground's, brighter where slopes or youth expose fresh
+/// material.
+TERRANE_INLINE void finishSample(float gx, float gy, float gz, float ground, double inverseRadius, std::size_t i,
+                                 Block& b) {
+  const float nx = static_cast<float>(b.x[i] * inverseRadius), ny = static_cast<float>(b.y[i] * inverseRadius),
+              nz = static_cast<float>(b.z[i] * inverseRadius);
+  const float outward = (gx * nx + gy * ny) + gz * nz;
+  gx -= outward * nx;
+  gy -= outward * ny;
+  gz -= outward * nz;
+  b.gradientX[i] = gx;
+  b.gradientY[i] = gy;
+  b.gradientZ[i] = gz;
+  const float squareSlope = (gx * gx + gy * gy) + gz * gz;
+  const float steep = squareSlope / (squareSlope + 0.5f);
+  const float mottling = 1.0f + 0.10f * b.mottle[i] + 0.35f * steep;
+  const float tint = ground * mottling + b.bright[i];
+  b.reflectance[i] = tint < 0.03f ? 0.03f : tint > 0.38f ? 0.38f : tint;
+}
+
 /// Floods the relief, adds what is young, clamps (C2, so that no sum of overlapping features leaves the stated range),
 /// roughens.
 template <Wanted kWanted>
@@ -73,30 +93,66 @@ void composeHeight(const Program& p, Block& b) {
     gx += calm * b.roughX[i] + roughCalm * b.dryX[i];
     gy += calm * b.roughY[i] + roughCalm * b.dryY[i];
     gz += calm * b.roughZ[i] + roughCalm * b.dryZ[i];
-    const float nx = static_cast<float>(b.x[i] * inverseRadius), ny = static_cast<float>(b.y[i] * inverseRadius),
-                nz = static_cast<float>(b.z[i] * inverseRadius);
-    const float outward = (gx * nx + gy * ny) + gz * nz;
-    gx -= outward * nx;
-    gy -= outward * ny;
-    gz -= outward * nz;
-    b.gradientX[i] = gx;
-    b.gradientY[i] = gy;
-    b.gradientZ[i] = gz;
+    const float highland = kHighlandTint + kHeightTint * static_cast<float>(b.relief[i] * p.inverseReliefAmplitude),
+                basalt = kBasaltTint + 0.004f * static_cast<float>(b.lava[i]) * lavaTint;
+    finishSample(gx, gy, gz, basalt + land * (highland - basalt), inverseRadius, i, b);
+  }
+}
 
-    // Reflectance: dark lava, bright highlands, brighter where slopes or youth expose fresh material.
-    const float squareSlope = (gx * gx + gy * gy) + gz * gz;
-    const float steep = squareSlope / (squareSlope + 0.5f);
-    const float uplift = static_cast<float>(b.relief[i] * p.inverseReliefAmplitude);
-    const float highland = 0.138f + 0.012f * uplift,
-                basalt = 0.055f + 0.004f * static_cast<float>(b.lava[i]) * lavaTint;
-    const float mottling = 1.0f + 0.10f * b.mottle[i] + 0.35f * steep;
-    const float tint = (basalt + land * (highland - basalt)) * mottling + b.bright[i];
-    b.reflectance[i] = tint < 0.03f ? 0.03f : tint > 0.38f ? 0.38f : tint;
+/// The same over an expansion of ground that is not mixed: a sum.
+template <Wanted kWanted>
+void composePlainHeight(const Program& p, Block& b) {
+  const double calm = p.far->calm, inverseRadius = 1.0 / p.radius;
+  const float singleCalm = static_cast<float>(calm), tint = p.far->tint, tintPerMeter = p.far->tintPerMeter;
+  for (std::size_t i = 0; i < b.count; ++i) {
+    b.height[i] = calm * b.rough[i] + (b.relief[i] + b.young[i]);
+    if constexpr (kWanted == Wanted::Heights) continue;
+    finishSample(b.reliefX[i] + b.youngX[i] + singleCalm * b.roughX[i],
+                 b.reliefY[i] + b.youngY[i] + singleCalm * b.roughY[i],
+                 b.reliefZ[i] + b.youngZ[i] + singleCalm * b.roughZ[i],
+                 tint + tintPerMeter * static_cast<float>(b.relief[i]), inverseRadius, i, b);
+  }
+}
+
+constexpr double kBoundSlack = 1 + 1e-9;  ///< for roundings
+
+/// Around each chunk, about the middle between its first and last sample, and around them all.
+void boundBlock(Block& b) {
+  double low[3], high[3];
+  for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
+    const std::size_t first = chunk * kChunk, last = first + kChunk - 1;
+    const double center[3] = {0.5 * (b.x[first] + b.x[last]), 0.5 * (b.y[first] + b.y[last]),
+                              0.5 * (b.z[first] + b.z[last])};
+    alignas(64) double squares[kChunk];
+#pragma GCC unroll 1
+    for (std::size_t i = 0; i < kChunk; ++i) {
+      const double dx = b.x[first + i] - center[0], dy = b.y[first + i] - center[1], dz = b.z[first + i] - center[2];
+      squares[i] = (dx * dx + dy * dy) + dz * dz;
+    }
+    b.chunkX[chunk] = center[0];
+    b.chunkY[chunk] = center[1];
+    b.chunkZ[chunk] = center[2];
+    double nearest, farthest;
+    findExtent(squares, kChunk, nearest, farthest);
+    b.chunkRadius[chunk] = __builtin_sqrt(farthest) * kBoundSlack;
+    for (int a = 0; a < 3; ++a) {
+      low[a] = chunk == 0 || center[a] < low[a] ? center[a] : low[a];
+      high[a] = chunk == 0 || center[a] > high[a] ? center[a] : high[a];
+    }
+  }
+  for (int a = 0; a < 3; ++a) b.center[a] = 0.5 * (low[a] + high[a]);
+  b.radius = 0;
+  for (std::size_t chunk = 0; chunk * kChunk < b.count; ++chunk) {
+    const double dx = b.chunkX[chunk] - b.center[0], dy = b.chunkY[chunk] - b.center[1],
+                 dz = b.chunkZ[chunk] - b.center[2];
+    const double radius = __builtin_sqrt(dx * dx + dy * dy + dz * dz) * kBoundSlack + b.chunkRadius[chunk];
+    b.radius = radius > b.radius ? radius : b.radius;
   }
 }
 
 template <Wanted kWanted>
 void evaluateAll(const Program& program, Block& block) {
+  boundBlock(block);
   if (program.far != nullptr) {
     startFromFar<kWanted>(*program.far, block);
   } else {
@@ -118,7 +174,11 @@ void evaluateAll(const Program& program, Block& block) {
       if (reaches(block, program.rays[k].center, program.rays[k].reach)) addRays(program.rays[k], block);
     }
   }
-  composeHeight<kWanted>(program, block);
+  if (isPlain(program)) {
+    composePlainHeight<kWanted>(program, block);
+  } else {
+    composeHeight<kWanted>(program, block);
+  }
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ inline constexpr std::size_t kChunk = 16;
 inline constexpr std::size_t kBlockSide = 13;
 inline constexpr std::size_t kBlockCapacity = 176;  // kBlockSide^2, rounded up to whole chunks
 inline constexpr std::size_t kBlockChunks = kBlockCapacity / kChunk;
+inline constexpr std::size_t kChunkSlots = (kBlockChunks + 3) / 4 * 4;  ///< in whole vectors
 
 /// One octave of gradient noise. cell coordinate = (rotation * position) / wavelength + offset.
 struct NoiseOctave {
@@ -178,10 +179,15 @@ struct Program {
   double inverseReliefAmplitude;
 };
 
+/// Reflectance of level ground before it is mottled, of highlands at relief 0 and of lava at its mean level, and what
+/// the relief's amplitude adds to it.
+inline constexpr float kHighlandTint = 0.138f, kBasaltTint = 0.055f, kHeightTint = 0.012f;
+
 /// All of a block's working memory and its results.
 struct alignas(64) Block {
-  std::size_t count;  ///< padded to whole chunks
-  double chunkCenter[kBlockChunks][3], chunkRadius[kBlockChunks];
+  std::size_t count;                                                                 ///< padded to whole chunks
+  alignas(64) double chunkX[kChunkSlots], chunkY[kChunkSlots], chunkZ[kChunkSlots];  ///< balls around the chunks
+  double chunkRadius[kChunkSlots];
   double center[3], radius;
 
   alignas(64) double x[kBlockCapacity], y[kBlockCapacity], z[kBlockCapacity];

@@ -20,7 +20,7 @@ struct Rotation {
 
 template <class Real, Wanted kWanted>
 void addReliefOctave(const NoiseOctave& octave, const RotatedBlock& rotated, const Rotation& turn, double footprint,
-                     bool isLast, Block& b) {
+                     bool withLava, bool isLast, Block& b) {
   OctaveSamples<Real> n;
   evaluateOctave<Real, kWanted>(rotated, octave, n);
   const double a = octave.amplitude, l = octave.lavaAmplitude;
@@ -29,16 +29,19 @@ void addReliefOctave(const NoiseOctave& octave, const RotatedBlock& rotated, con
   const float weight = static_cast<float>(octave.mottle);
   for (std::size_t i = 0; i < b.count; ++i) {
     b.relief[i] += a * static_cast<double>(n.value[i]);
-    b.lava[i] += l * static_cast<double>(n.value[i]);
     if constexpr (kWanted == Wanted::Heights) continue;
     rotateBack(turn.m, n.x[i], n.y[i], n.z[i], n.x[i], n.y[i], n.z[i]);
     b.reliefX[i] += da * n.x[i];
     b.reliefY[i] += da * n.y[i];
     b.reliefZ[i] += da * n.z[i];
+    b.mottle[i] += weight * static_cast<float>(n.value[i]);
+  }
+  for (std::size_t i = 0; withLava && i < b.count; ++i) {
+    b.lava[i] += l * static_cast<double>(n.value[i]);
+    if constexpr (kWanted == Wanted::Heights) continue;
     b.lavaX[i] += dl * n.x[i];
     b.lavaY[i] += dl * n.y[i];
     b.lavaZ[i] += dl * n.z[i];
-    b.mottle[i] += weight * static_cast<float>(n.value[i]);
   }
   if (!isLast) return;
   const float toUnit = static_cast<float>(octave.inverseWavelength);
@@ -55,6 +58,11 @@ TERRANE_INLINE bool inDouble(const NoiseOctave& octave, const Program& program) 
   return program.doubleWavelength * octave.inverseWavelength <= 1;
 }
 
+/// Added to an expansion of ground that is not mixed (far_expansion.h).
+TERRANE_INLINE bool isPlain(const Program& program) {
+  return program.far != nullptr && program.far->ground != FarGround::Mixed;
+}
+
 /// Relief and lava are two sums over the same octaves. The last octave is left as the modulator of the first regolith
 /// group.
 template <Wanted kWanted>
@@ -66,9 +74,11 @@ void addRelief(const Program& program, Block& b) {
   for (std::size_t k = 0; k < group.count; ++k) {
     const NoiseOctave& octave = group.octaves[k];
     if (inDouble(octave, program)) {
-      addReliefOctave<double, kWanted>(octave, rotated, turn, program.footprint, k + 1 == group.count, b);
+      addReliefOctave<double, kWanted>(octave, rotated, turn, program.footprint, !isPlain(program),
+                                       k + 1 == group.count, b);
     } else {
-      addReliefOctave<float, kWanted>(octave, rotated, turn, program.footprint, k + 1 == group.count, b);
+      addReliefOctave<float, kWanted>(octave, rotated, turn, program.footprint, !isPlain(program), k + 1 == group.count,
+                                      b);
     }
   }
 }

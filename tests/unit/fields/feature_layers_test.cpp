@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "common/tiling/cube_sphere.h"
 #include "server/fields/feature_layers.h"
 #include "server/fields/lunar_bounds.h"
 #include "tests/unit/fields/field_samples.h"
@@ -146,6 +147,92 @@ TEST(FeatureLayers, ARowFindsWhatTouchesItsPointsInTheOrderOfTheBall) {
   }
   std::printf("in the ball %zu, near the row %zu, touching its points %zu\n", around, near, touching);
   EXPECT_LT(near, around / 2);
+}
+
+/// A square of so many points each way, its middle and side as directions: all of it, or its border.
+std::vector<glm::dvec3> squareAround(const glm::dvec3& middle, const glm::dvec3& side, double half, bool whole) {
+  const glm::dvec3 other = glm::cross(middle, side);
+  constexpr int kCells = 12;
+  std::vector<glm::dvec3> points;
+  for (int j = 0; j <= kCells; ++j) {
+    for (int i = 0; i <= kCells; ++i) {
+      if (!whole && i % kCells != 0 && j % kCells != 0) continue;
+      const double u = 2.0 * i / kCells - 1, v = 2.0 * j / kCells - 1;
+      points.push_back(glm::normalize(middle + half * (u * side + v * other)));
+    }
+  }
+  return points;
+}
+
+// Of tiles of all sizes, from the border alone, over edges and corners of faces too.
+TEST(FeatureLayers, APatchFindsWhatTouchesThePointsThatItsBorderEncloses) {
+  std::mt19937_64 random(14);
+  std::uniform_real_distribution<double> sizes(1, 30);
+  std::size_t around = 0, near = 0, touching = 0;
+  for (const FeatureLayer& layer : crowdedLayers()) {
+    for (int i = 0; i < 10; ++i) {
+      const glm::dvec3 middle =
+          i < 4 ? glm::normalize(glm::dvec3(1, i % 2 ? 1 : -1, 0.3 * i)) : randomDirection(random);
+      const glm::dvec3 side = glm::normalize(glm::cross(middle, randomDirection(random)));
+      const double half = std::min(sizes(random) * layer.largestDiameter() / kMoonRadius, 0.5);
+      std::vector<double> x, y, z;
+      Ball ball{{middle.x * kMoonRadius, middle.y * kMoonRadius, middle.z * kMoonRadius}, 0};
+      for (const glm::dvec3& p : squareAround(middle, side, half, false)) {
+        x.push_back(p.x);
+        y.push_back(p.y);
+        z.push_back(p.z);
+        ball.radius = std::max(ball.radius, 1.001 * kMoonRadius * glm::distance(p, middle));
+      }
+      const PatchTarget patch({x.data(), y.data(), z.data(), x.size(), kMoonRadius, ball}, 0);
+      std::vector<Feature> ofBall, ofPatch;
+      gatherFeatures(layer, kMoonRadius, PatchTarget(ball), ofBall);
+      gatherFeatures(layer, kMoonRadius, patch, ofPatch);
+      const std::vector<glm::dvec3> all = squareAround(middle, side, half, true);
+      std::size_t next = 0;
+      for (const Feature& f : ofBall) {
+        const bool found = next < ofPatch.size() && centerOf(ofPatch[next]) == centerOf(f);
+        next += found ? 1 : 0;
+        const auto touches = [&](const glm::dvec3& p) {
+          return glm::distance(p * kMoonRadius, centerOf(f)) <= f.reach;
+        };
+        if (std::ranges::none_of(all, touches)) continue;
+        ASSERT_TRUE(found) << "exponent " << layer.exponent << ", patch " << i;
+        ++touching;
+      }
+      ASSERT_EQ(next, ofPatch.size()) << "what the ball has not, or in another order";
+      around += ofBall.size();
+      near += ofPatch.size();
+    }
+  }
+  std::printf("in the ball %zu, near the patch %zu, touching its points %zu\n", around, near, touching);
+  EXPECT_LT(near, around);
+}
+
+TEST(FeatureLayers, APatchHoldsItsPointsAndNoneBesideThem) {
+  std::mt19937_64 random(15);
+  for (int i = 0; i < 200; ++i) {
+    const glm::dvec3 middle = randomDirection(random);
+    const double half = std::exp2(-3.0 - i % 20);
+    // Along the face's own axes, as a cube's tiles lie.
+    const FaceCoordinates at = cubeFaceCoordinates(middle);
+    std::vector<double> axes[3], outside[3];
+    Ball ball{{middle.x * kMoonRadius, middle.y * kMoonRadius, middle.z * kMoonRadius}, 3 * half * kMoonRadius};
+    for (const double u : {-1.0, 0.0, 1.0}) {
+      for (const double v : {-1.0, 0.0, 1.0}) {
+        const glm::dvec3 in = cubeDirection(at.face, at.s + half * u, at.t + half * v);
+        const glm::dvec3 out = cubeDirection(at.face, at.s + half * (u + 0.2), at.t + half * v);
+        for (int a = 0; a < 3; ++a) {
+          axes[a].push_back(in[a]);
+          outside[a].push_back(out[a]);
+        }
+      }
+    }
+    const PointSet in{axes[0].data(), axes[1].data(), axes[2].data(), axes[0].size(), kMoonRadius, ball};
+    const PointSet out{outside[0].data(), outside[1].data(), outside[2].data(), outside[0].size(), kMoonRadius, ball};
+    const PatchTarget patch(in, 0.005);
+    EXPECT_TRUE(patch.holds(in));
+    EXPECT_FALSE(patch.holds(out));
+  }
 }
 
 TEST(FeatureLayers, HalosAreThoseOfTheYoungestCratersFromEveryBall) {
