@@ -56,20 +56,24 @@ class SkirtBuilder {
     return {tile_.directions.x[anchor], tile_.directions.y[anchor], tile_.directions.z[anchor]};
   }
 
-  /// Edge by edge: a batch that runs around the tile would be as wide as the tile everywhere.
+  /// Edge by edge: a batch that runs around the tile would be as wide as the tile everywhere. Each edge ends where the
+  /// next one starts.
   void evaluate(std::size_t samplesPerEdge, int level) {
     const GridDirections& d = scratch_.directions;
+    samplesPerEdge_ = samplesPerEdge;
     scratch_.heightMeters.clear();
     for (std::size_t edge = 0; edge < edges_; ++edge) {
-      const std::size_t at = edge * samplesPerEdge;
-      const int cells = static_cast<int>(samplesPerEdge) - 1;
+      const std::size_t at = edge * (samplesPerEdge + 1);
       SampleBatch batch{d.x.data() + at, d.y.data() + at, d.z.data() + at, 1, samplesPerEdge};
-      batch.grid = GridPlace{tile_.path, cells, static_cast<int>(edge)};
+      batch.grid = GridPlace{tile_.path, static_cast<int>(samplesPerEdge), static_cast<int>(edge)};
       batch.toleranceMeters = tile_.levels[static_cast<std::size_t>(tile_.path.level())].toleranceMeters;
       tile_.field.evaluate(batch, tile_.levels[static_cast<std::size_t>(level)].minWavelengthMeters, scratch_.samples);
       scratch_.heightMeters.insert(scratch_.heightMeters.end(), scratch_.samples.heightMeters.begin(),
                                    scratch_.samples.heightMeters.end());
     }
+  }
+  double evaluated(std::size_t edge, std::size_t k) const {
+    return scratch_.heightMeters[(edge * samplesPerEdge_ + k) % scratch_.heightMeters.size()];
   }
 
   void startDirections() {
@@ -88,14 +92,13 @@ class SkirtBuilder {
     startDirections();
     for (std::size_t edge = 0; edge < edges_; ++edge)
       for (std::size_t k = 0; k <= cells_; k += 2) addDirection(anchorDirection(edge, k));
-    const std::size_t perEdge = cells_ / 2 + 1;
-    evaluate(perEdge, tile_.path.level() - 1);
+    evaluate(cells_ / 2, tile_.path.level() - 1);
     for (std::size_t edge = 0; edge < edges_; ++edge) {
-      const double* coarse = scratch_.heightMeters.data() + edge * perEdge;
-      for (std::size_t k = 0; k <= cells_; k += 2) lower(edge, k, coarse[k / 2]);
+      const auto coarse = [&](std::size_t k) { return evaluated(edge, k); };
+      for (std::size_t k = 0; k <= cells_; k += 2) lower(edge, k, coarse(k / 2));
       for (std::size_t k = 1; k < cells_; k += 2) {
-        const glm::dvec3 a = anchorDirection(edge, k - 1) * (tile_.radiusMeters + coarse[k / 2]);
-        const glm::dvec3 b = anchorDirection(edge, k + 1) * (tile_.radiusMeters + coarse[k / 2 + 1]);
+        const glm::dvec3 a = anchorDirection(edge, k - 1) * (tile_.radiusMeters + coarse(k / 2));
+        const glm::dvec3 b = anchorDirection(edge, k + 1) * (tile_.radiusMeters + coarse(k / 2 + 1));
         lower(edge, k, chordRadius(a, b, anchorDirection(edge, k)) - tile_.radiusMeters);
       }
     }
@@ -106,13 +109,11 @@ class SkirtBuilder {
     startDirections();
     for (std::size_t edge = 0; edge < edges_; ++edge)
       appendEdgeDirections(tile_.path, static_cast<int>(edge), 2 * tile_.topology.cellsPerEdge, scratch_.directions);
-    const std::size_t perEdge = 2 * cells_ + 1;
-    evaluate(perEdge, tile_.path.level() + 1);
+    evaluate(2 * cells_, tile_.path.level() + 1);
     for (std::size_t edge = 0; edge < edges_; ++edge) {
-      const double* fine = scratch_.heightMeters.data() + edge * perEdge;
-      for (std::size_t q = 0; q < perEdge; ++q) {
-        lower(edge, q / 2, fine[q]);
-        lower(edge, (q + 1) / 2, fine[q]);
+      for (std::size_t q = 0; q <= 2 * cells_; ++q) {
+        lower(edge, q / 2, evaluated(edge, q));
+        lower(edge, (q + 1) / 2, evaluated(edge, q));
       }
     }
   }
@@ -122,7 +123,7 @@ class SkirtBuilder {
   const SkirtInput& tile_;
   SkirtScratch& scratch_;
   std::vector<double>& lowest_;
-  std::size_t edges_, cells_;
+  std::size_t edges_, cells_, samplesPerEdge_ = 0;
 };
 
 }  // namespace

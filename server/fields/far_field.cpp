@@ -1,6 +1,7 @@
 #include "server/fields/far_field.h"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "common/numerics/strict_math.h"
@@ -8,10 +9,14 @@
 
 namespace terrane::lunar {
 void FarField::Part::clear() {
-  octaves.clear();
-  groups.clear();
+  clearOfLevel();
   basins.clear();
   patches.clear();
+}
+
+void FarField::Part::clearOfLevel() {
+  octaves.clear();
+  groups.clear();
   runs.clear();
   halos.clear();
 }
@@ -96,8 +101,6 @@ void FarField::chooseOctaves(const Program& whole, const NoiseOctave* table, con
   farOctaves_ = 0;
   octaveCount_ = 0;
   octaveError_ = 0;
-  footprint_ = whole.footprint;
-  minWavelength_ = whole.minWavelength;
   const NoiseOctave* last = nullptr;
   bool wholeSoFar = true;
   for (std::size_t g = 0; g <= whole.regolithCount; ++g) {
@@ -134,55 +137,66 @@ void FarField::takeOctaves(const Program& whole, bool far, Part& out) const {
   }
 }
 
-double FarField::takeLandmarks(const Program& whole, bool far, Part& out) const {
-  double errors = 0;
+void FarField::partLandmarks(const Program& whole) {
   for (std::size_t k = 0; k < whole.basinCount; ++k) {
     const double error = farBasinError(whole.basins[k], patch_.ball);
-    if (accepts(error) != far) continue;
-    out.basins.push_back(whole.basins[k]);
-    errors += error;
+    (accepts(error) ? far_ : near_).basins.push_back(whole.basins[k]);
+    if (accepts(error)) featureError_ += error;
   }
   for (std::size_t k = 0; k < whole.patchCount; ++k) {
     const double error = farLavaPatchError(whole.patches[k], whole.lavaTop - whole.lavaFloor, patch_.ball);
-    if (accepts(error) != far) continue;
-    out.patches.push_back(whole.patches[k]);
-    errors += error;
+    (accepts(error) ? far_ : near_).patches.push_back(whole.patches[k]);
+    if (accepts(error)) featureError_ += error;
   }
-  return errors;
 }
 
-double FarField::errorOf(const FeatureRun& run, std::size_t index, const Program& atLevel) const noexcept {
-  const Feature& feature = run.features[index];
+double FarField::errorOf(FeatureStage stage, const Feature& feature, const Program& atLevel) const noexcept {
   // The next coarser level, whose edges are added to the expansion too, must show it in whole.
-  if (run.stage == FeatureStage::Rock || feature.radius < kLeastFarFeatureRadii * patch_.ball.radius ||
-      shownShare(feature.radius, 2 * minWavelength_) < 1)
+  if (stage == FeatureStage::Rock || feature.radius < kLeastFarFeatureRadii * patch_.ball.radius ||
+      shownShare(feature.radius, 2 * atLevel.minWavelength) < 1)
     return std::numeric_limits<double>::infinity();
   return farCraterError(feature, atLevel, patch_.ball);
 }
 
-double FarField::takeCraters(const Program& whole, bool far, Part& out) const {
-  Program atLevel = whole;
-  atLevel.footprint = footprint_;
-  atLevel.minWavelength = minWavelength_;
-  double errors = 0;
+void FarField::judgeCraters(const Program& whole) {
+  judged_.clear();
+  verdicts_.clear();
   for (std::size_t k = 0; k < whole.runCount; ++k) {
     const FeatureRun& run = whole.runs[k];
+    judged_.push_back({run.features, run.count, verdicts_.size()});
+    for (std::size_t i = 0; i < run.count; ++i) {
+      const double error = errorOf(run.stage, run.features[i], whole);
+      verdicts_.push_back(accepts(error));
+      if (accepts(error)) featureError_ += error;
+    }
+  }
+}
+
+const char* FarField::verdictsOn(const FeatureRun& run, std::size_t& from) const noexcept {
+  for (std::size_t k = from; k < judged_.size(); ++k) {
+    const Feature *first = judged_[k].features, *end = first + judged_[k].count;
+    if (!std::less<>()(run.features, first) && !std::less<>()(end, run.features + run.count)) {
+      from = k;
+      return verdicts_.data() + judged_[k].begin + (run.features - first);
+    }
+  }
+  return nullptr;
+}
+
+void FarField::takeCraters(const Program& whole, bool far, Part& out) const {
+  std::size_t judged = 0;
+  for (std::size_t k = 0; k < whole.runCount; ++k) {
+    const FeatureRun& run = whole.runs[k];
+    const char* const isFar = verdictsOn(run, judged);
     std::size_t begin = 0;
     const auto takeUpTo = [&](std::size_t end) {
       if (end > begin) out.runs.push_back({run.features + begin, end - begin, run.stage, run.inDouble || far});
       begin = end + 1;
     };
-    for (std::size_t i = 0; i < run.count; ++i) {
-      const double error = errorOf(run, i, atLevel);
-      if (accepts(error) != far) {
-        takeUpTo(i);
-      } else {
-        errors += error;
-      }
-    }
+    for (std::size_t i = 0; i < run.count; ++i)
+      if ((isFar != nullptr && isFar[i] != 0) != far) takeUpTo(i);
     takeUpTo(run.count);
   }
-  return errors;
 }
 
 void FarField::takeHalos(const Program& whole, bool far, Part& out) const {
@@ -208,8 +222,12 @@ void FarField::floodNear(Part& near) {
 
 Program FarField::farOf(const Program& whole) {
   far_.clear();
+  near_.clear();
+  featureError_ = 0;
+  partLandmarks(whole);
+  judgeCraters(whole);
   takeOctaves(whole, true, far_);
-  featureError_ = takeLandmarks(whole, true, far_) + takeCraters(whole, true, far_);
+  takeCraters(whole, true, far_);
   takeHalos(whole, true, far_);
   Program program = whole;
   far_.apply(program);
@@ -220,9 +238,8 @@ Program FarField::farOf(const Program& whole) {
 }
 
 Program FarField::nearOf(const Program& whole, const FarExpansion& expansion) {
-  near_.clear();
+  near_.clearOfLevel();
   takeOctaves(whole, false, near_);
-  takeLandmarks(whole, false, near_);
   takeCraters(whole, false, near_);
   if (!whole.heightsOnly) takeHalos(whole, false, near_);
   if (expansion.ground == FarGround::Lava) floodNear(near_);

@@ -32,8 +32,8 @@ class FarField {
   bool isWorthwhile() const noexcept { return octaveCount_ >= kLeastOctaves; }
 
   /// What is to be evaluated at the nodes, of a program with the same body and level as was chosen for; and what is
-  /// left of it, or of one of the levels beside it, of which heights alone are wanted. Each valid until the next call
-  /// of it.
+  /// left of it, or of one of the levels beside it with the same gathered features, of which heights alone are wanted.
+  /// Each valid until the next call of it.
   Program farOf(const Program& whole);
   /// Under lava that is known to cover all, nothing is.
   Program nearOf(const Program& whole, const FarExpansion& expansion);
@@ -56,6 +56,8 @@ class FarField {
     std::vector<FeatureRun> runs;
     std::vector<HaloRun> halos;
     void clear();
+    /// All but basins and lava patches, which every level shows.
+    void clearOfLevel();
     void apply(Program& program) const;
   };
 
@@ -66,14 +68,19 @@ class FarField {
   double missedOf(double inverseWavelength) const noexcept;
   /// Whether a part that is never further from its polynomial than this is to be far.
   bool accepts(double errorMeters) const noexcept { return errorMeters <= kFeatureShare * tolerance_; }
-  double errorOf(const FeatureRun& run, std::size_t index, const Program& atLevel) const noexcept;
+  double errorOf(FeatureStage stage, const Feature& feature, const Program& atLevel) const noexcept;
+  /// Decides for all features of a program.
+  void judgeCraters(const Program& whole);
+  /// One flag a feature of a run: whether it is far. Null if none was judged: what only finer levels show is near.
+  /// from: where in judged_ to look; runs come in the same order.
+  const char* verdictsOn(const FeatureRun& run, std::size_t& from) const noexcept;
   bool isChosen(const NoiseOctave& octave) const noexcept { return (farOctaves_ & bitOf(octave)) != 0; }
   std::size_t chooseIn(const NoiseGroup& group, bool keepLast);
   double errorIn(const NoiseGroup& group, const NoiseOctave* last) const noexcept;
   void takeOctaves(const Program& whole, bool far, Part& out) const;
-  /// These add up the errors of what is far.
-  double takeLandmarks(const Program& whole, bool far, Part& out) const;
-  double takeCraters(const Program& whole, bool far, Part& out) const;
+  /// Parts basins and lava patches between far_ and near_.
+  void partLandmarks(const Program& whole);
+  void takeCraters(const Program& whole, bool far, Part& out) const;
   void takeHalos(const Program& whole, bool far, Part& out) const;
   /// Leaves of what is near only the lava's octaves, as relief, and what is younger.
   static void floodNear(Part& near);
@@ -83,8 +90,15 @@ class FarField {
   std::uint64_t farOctaves_ = 0;
   int octaveCount_ = 0;
   double octaveError_ = 0, featureError_ = 0;
-  double footprint_ = 0, minWavelength_ = 0, tolerance_ = 0;
+  double tolerance_ = 0;
   Part far_, near_;
+  /// Features that were judged, run by run.
+  struct Judged {
+    const Feature* features;
+    std::size_t count, begin;  ///< in verdicts_
+  };
+  std::vector<Judged> judged_;
+  std::vector<char> verdicts_;
 };
 
 }  // namespace terrane::lunar

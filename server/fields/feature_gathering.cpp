@@ -18,6 +18,7 @@ bool FeatureGathering::covers(const FeatureTables& tables, const PointSet& point
 }
 
 void FeatureGathering::start(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points) {
+  ++version_;
   tables_ = tables;
   PointSet wider = points;
   wider.ball.radius *= 1 + 2 * kSlack;
@@ -41,6 +42,7 @@ GatheredFeatures FeatureGathering::near(const std::shared_ptr<const FeatureTable
 }
 
 void FeatureGathering::gatherForPatch(std::size_t count) {
+  if (layerEnds_.size() < count) ++version_;
   while (layerEnds_.size() < count) {
     gatherFeatures(tables_->layers[layerEnds_.size()], tables_->bodyRadius, patch_, features_);
     layerEnds_.push_back(features_.size());

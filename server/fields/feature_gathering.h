@@ -3,6 +3,7 @@
 // grid, then its borders at the levels beside it. What only the borders ask for is gathered near them alone. Body
 // frame, metres. Belongs to one thread.
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -40,6 +41,8 @@ class FeatureGathering {
   /// Valid until the next call.
   GatheredFeatures near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
                         const FeatureWants& wants);
+  /// Changes whenever what is kept of features does.
+  std::uint64_t version() const noexcept { return version_; }
 
  private:
   bool covers(const FeatureTables& tables, const PointSet& points) const noexcept;
@@ -51,6 +54,7 @@ class FeatureGathering {
 
   std::shared_ptr<const FeatureTables> tables_;  ///< held, so that it is never mistaken for another's
   PatchTarget patch_{Ball{}};
+  std::uint64_t version_ = 0;
   std::vector<Feature> features_, landmarks_;
   std::vector<Halo> halos_;
   std::vector<std::size_t> layerEnds_,

@@ -27,8 +27,9 @@ bool simdPathSupported(SimdPath path) noexcept;
 Result<SimdPath> parseSimdPath(std::string_view text);
 
 /// Says which vertices samples are: all of a tile's grid, by grid index, or those along one edge, in the order of the
-/// skirts (build/grid_directions.h): of these heights alone are asked for, gradients and reflectance may hold anything.
-/// cellsPerEdge is a power of two, at most 256, and may be another than that of the tiles served.
+/// skirts (build/grid_directions.h), of which the last may be left out, as it is the next edge's first: of these
+/// heights alone are asked for, gradients and reflectance may hold anything. cellsPerEdge is a power of two, at most
+/// 256, and may be another than that of the tiles served.
 struct GridPlace {
   static constexpr int kWholeGrid = -1;
   FacePath path;

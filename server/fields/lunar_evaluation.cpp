@@ -28,6 +28,7 @@ struct SurfaceSamples::Scratch {
   /// What the expansion is of: only the edges of the same tile may be added to it.
   std::shared_ptr<const FeatureTables> expandedFor;
   FacePath expandedPath;
+  std::uint64_t expandedFeatures = 0;  ///< version of the gathering
 };
 
 namespace {
@@ -148,7 +149,8 @@ class LunarField::Evaluation {
   bool isEdge() const noexcept { return batch_.grid && !batch_.grid->isWholeGrid(); }
   TileGrid gridOfTile() const noexcept { return {batch_.grid->path.scheme(), batch_.grid->cellsPerEdge}; }
   bool isExpanded() const noexcept {
-    return scratch_.expandedFor == field_.features_ && scratch_.expandedPath == batch_.grid->path;
+    return scratch_.expandedFor == field_.features_ && scratch_.expandedPath == batch_.grid->path &&
+           scratch_.expandedFeatures == scratch_.gathering.version();
   }
   /// Whether no finer level shows more relief or old craters.
   bool showsAllOldGround() const noexcept {
@@ -201,6 +203,7 @@ class LunarField::Evaluation {
     fitExpansion(patch, scratch_.block, scratch_.expansion);
     scratch_.expandedFor = field_.features_;
     scratch_.expandedPath = batch_.grid->path;
+    scratch_.expandedFeatures = scratch_.gathering.version();
     return true;
   }
 
@@ -219,13 +222,14 @@ class LunarField::Evaluation {
   void fillBlock(std::size_t count, const PointAt& pointAt) {
     Block& block = scratch_.block;
     block.count = (count + kChunk - 1) / kChunk * kChunk;
-    for (std::size_t i = 0; i < block.count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       double p[3];
-      pointAt(std::min(i, count - 1), p);
+      pointAt(i, p);
       block.x[i] = p[0];
       block.y[i] = p[1];
       block.z[i] = p[2];
     }
+    for (double* const axis : {block.x, block.y, block.z}) std::fill(axis + count, axis + block.count, axis[count - 1]);
   }
 
   void evaluateBlock(std::span<const std::uint32_t> samples, bool gathered) {
@@ -250,10 +254,13 @@ class LunarField::Evaluation {
 
   void store(std::span<const std::uint32_t> samples) {
     const Block& block = scratch_.block;
-    for (std::size_t i = 0; i < samples.size(); ++i) out_.heightMeters[samples[i]] = block.height[i];
-    if (program_.heightsOnly) return;
+    if (program_.heightsOnly) {
+      for (std::size_t i = 0; i < samples.size(); ++i) out_.heightMeters[samples[i]] = block.height[i];
+      return;
+    }
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::size_t to = samples[i];
+      out_.heightMeters[to] = block.height[i];
       out_.gradientX[to] = block.gradientX[i];
       out_.gradientY[to] = block.gradientY[i];
       out_.gradientZ[to] = block.gradientZ[i];

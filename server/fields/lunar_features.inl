@@ -56,26 +56,44 @@ void placeSamples(const Feature& f, const Block& b, Reached<Real>& at) {
   }
 }
 
-/// 1 + sum of cos and sin of 2..5 times the bearing.
+/// An outline, 1 + the sum of cos and sin of 2..5 times the bearing, as A(c) + s B(c) of the bearing's cosine and sine:
+/// with Chebyshev's polynomials, cos(k b) = T_k(c) and sin(k b) = s U_(k-1)(c).
+template <class Real>
+struct OutlinePolynomials {
+  Real a[6], b[5];
+  TERRANE_INLINE explicit OutlinePolynomials(const Feature& f) {
+    const double *c = f.lobeCos, *s = f.lobeSin;
+    a[0] = Real(1 - c[0] + c[2]);
+    a[1] = Real(5 * c[3] - 3 * c[1]);
+    a[2] = Real(2 * c[0] - 8 * c[2]);
+    a[3] = Real(4 * c[1] - 20 * c[3]);
+    a[4] = Real(8 * c[2]);
+    a[5] = Real(16 * c[3]);
+    b[0] = Real(s[3] - s[1]);
+    b[1] = Real(2 * s[0] - 4 * s[2]);
+    b[2] = Real(4 * s[1] - 12 * s[3]);
+    b[3] = Real(8 * s[2]);
+    b[4] = Real(16 * s[3]);
+  }
+};
+
+/// And its derivative by the bearing: c B - s (A' + s B').
 template <class Real>
 void outlineSamples(const Feature& f, Reached<Real>& at) {
-  Real lobeCos[kLobes], lobeSin[kLobes];
-  for (int k = 0; k < kLobes; ++k) {
-    lobeCos[k] = Real(f.lobeCos[k]);
-    lobeSin[k] = Real(f.lobeSin[k]);
-  }
+  static_assert(kLobes == 4);
+  const OutlinePolynomials<Real> p(f);
+  const Real a0 = p.a[0], a1 = p.a[1], a2 = p.a[2], a3 = p.a[3], a4 = p.a[4], a5 = p.a[5];
+  const Real b0 = p.b[0], b1 = p.b[1], b2 = p.b[2], b3 = p.b[3], b4 = p.b[4];
+  const Real slopeA1 = Real(2) * a2, slopeA2 = Real(3) * a3, slopeA3 = Real(4) * a4, slopeA4 = Real(5) * a5;
+  const Real slopeB1 = Real(2) * b2, slopeB2 = Real(3) * b3, slopeB3 = Real(4) * b4;
   for (std::size_t i = 0; i < at.count; ++i) {
     const Real c = at.cosine[i], s = at.sine[i];
-    Real cosine = c, sine = s, lobes = Real(0), turn = Real(0);
-    for (int k = 0; k < kLobes; ++k) {
-      const Real nextCosine = cosine * c - sine * s;
-      sine = cosine * s + sine * c;
-      cosine = nextCosine;
-      lobes += lobeCos[k] * cosine + lobeSin[k] * sine;
-      turn += Real(k + 2) * (lobeSin[k] * cosine - lobeCos[k] * sine);
-    }
-    at.outline[i] = Real(1) + lobes;
-    at.turn[i] = turn;
+    const Real a = a0 + c * (a1 + c * (a2 + c * (a3 + c * (a4 + c * a5))));
+    const Real b = b0 + c * (b1 + c * (b2 + c * (b3 + c * b4)));
+    const Real slopeA = a1 + c * (slopeA1 + c * (slopeA2 + c * (slopeA3 + c * slopeA4)));
+    const Real slopeB = b1 + c * (slopeB1 + c * (slopeB2 + c * slopeB3));
+    at.outline[i] = a + s * b;
+    at.turn[i] = c * b - s * (slopeA + s * slopeB);
   }
 }
 

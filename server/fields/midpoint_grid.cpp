@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <vector>
+
 #include "common/numerics/strict_math.h"
 #include "server/fields/midpoint_gradient.h"
 #include "server/fields/midpoint_samples.h"
@@ -28,8 +31,10 @@ void sampleGridOf(const Surface& surface, const GridPlace& grid, SurfaceSamples&
 }
 
 template <class Tiling>
-void sampleEdgeOf(const Surface& surface, const GridPlace& grid, std::span<double> heights) {
+void sampleEdgeOf(const Surface& surface, const GridPlace& grid, std::span<double> out) {
   thread_local Subdivision<Tiling> subdivision;
+  thread_local std::vector<double> heights;
+  heights.resize(static_cast<std::size_t>(grid.cellsPerEdge) + 1);
   subdivision.start(surface.displacement, surface.gridLevel, grid.path.face(), 0);
   subdivision.enter(grid.path);
   const auto end = [&](int k) {
@@ -51,6 +56,7 @@ void sampleEdgeOf(const Surface& surface, const GridPlace& grid, std::span<doubl
           surface.displacement.meters(gridLevel, subdivision.tiling().key(cells, gridLevel, place.i, place.j));
     }
   }
+  std::copy_n(heights.begin(), out.size(), out.begin());
 }
 
 }  // namespace

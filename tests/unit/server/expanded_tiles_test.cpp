@@ -182,5 +182,30 @@ TEST_P(ExpandedTiles, LendTheirExpansionToTheirOwnEdgesOnly) {
   EXPECT_GT(lent, 100);
 }
 
+TEST_P(ExpandedTiles, AreForgottenWhereOtherBatchesCameBetweenThemAndTheirEdges) {
+  std::mt19937_64 random(kSeed + 4);
+  SurfaceSamples grid, between, edge, fullEdge;
+  for (int round = 0; round < 60; ++round) {
+    const int level = 6 + round % (maxLevel() - 6);
+    const FacePath path = randomTile(random, level), other = randomTile(random, level);
+    const double tolerance = accuracy(level).toleranceMeters;
+    evaluate(*field_, path, tolerance, grid);
+    between.scratch = edge.scratch = grid.scratch;
+    // Finer, so that more is gathered near the same tile; or elsewhere, so that all is.
+    SampleBatch batch{directions_.x.data(), directions_.y.data(), directions_.z.data(), 1, 30};
+    if (round % 2 == 0) {
+      field_->evaluate(batch, minWavelength(level, kCells) / 16, between);
+    } else {
+      evaluate(*field_, other, 0, between);
+    }
+    evaluateEdge(path, kCells, 1, tolerance, edge);
+    evaluateEdge(path, kCells, 1, 0, fullEdge);
+    for (std::size_t i = 0; i < edge.heightMeters.size(); ++i)
+      EXPECT_LE(std::abs(edge.heightMeters[i] - fullEdge.heightMeters[i]),
+                tolerance + field_->roundingMeters(minWavelength(level + 1, kCells)))
+          << path.text();
+  }
+}
+
 }  // namespace
 }  // namespace terrane
