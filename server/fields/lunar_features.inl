@@ -77,8 +77,8 @@ struct OutlinePolynomials {
   }
 };
 
-/// And its derivative by the bearing: c B - s (A' + s B').
-template <class Real>
+/// And, if wanted, its derivative by the bearing: c B - s (A' + s B').
+template <class Real, Wanted kWanted>
 void outlineSamples(const Feature& f, Reached<Real>& at) {
   static_assert(kLobes == 4);
   const OutlinePolynomials<Real> p(f);
@@ -90,25 +90,26 @@ void outlineSamples(const Feature& f, Reached<Real>& at) {
     const Real c = at.cosine[i], s = at.sine[i];
     const Real a = a0 + c * (a1 + c * (a2 + c * (a3 + c * (a4 + c * a5))));
     const Real b = b0 + c * (b1 + c * (b2 + c * (b3 + c * b4)));
+    at.outline[i] = a + s * b;
+    if constexpr (kWanted == Wanted::Heights) continue;
     const Real slopeA = a1 + c * (slopeA1 + c * (slopeA2 + c * (slopeA3 + c * slopeA4)));
     const Real slopeB = b1 + c * (slopeB1 + c * (slopeB2 + c * slopeB3));
-    at.outline[i] = a + s * b;
     at.turn[i] = c * b - s * (slopeA + s * slopeB);
   }
 }
 
-template <class Real, bool kRock>
+template <class Real, bool kRock, Wanted kWanted>
 void profileSamples(const Shape<Real>& shape, Reached<Real>& at) {
   for (std::size_t i = 0; i < at.ejectaBegin; ++i) {
     const Real stretched = at.square[i] * at.outline[i] * at.outline[i];
     const Profile<Real> h = kRock ? rockProfile<Real>(shape, stretched) : craterProfile<Real>(shape, stretched);
     at.value[i] = h.value;
-    at.slope[i] = h.slope;
+    if constexpr (kWanted == Wanted::All) at.slope[i] = h.slope;
   }
   for (std::size_t i = at.ejectaBegin; i < at.count; ++i) {
     const Profile<Real> h = ejectaProfile<Real>(shape, at.square[i] * at.outline[i] * at.outline[i]);
     at.value[i] = h.value;
-    at.slope[i] = h.slope;
+    if constexpr (kWanted == Wanted::All) at.slope[i] = h.slope;
   }
 }
 
@@ -186,8 +187,8 @@ void addFeatures(const FeatureRun& run, const Program& program, Block& b) {
     const double share = kRock ? 1.0 : ejectaFrom<Real>(shape) * (1.0 / kApronRadii);
     findChunks(chunks, f, share * f.reach, b, at);
     placeSamples(f, b, at);
-    outlineSamples(f, at);
-    profileSamples<Real, kRock>(shape, at);
+    outlineSamples<Real, kWanted>(f, at);
+    profileSamples<Real, kRock, kWanted>(shape, at);
     addReached<Real, Stage, kWanted>(f, f.brightness * static_cast<float>(shape.shown), at, b);
   }
 }

@@ -25,10 +25,9 @@ TERRANE_INLINE double singleRounding(double minWavelength) noexcept {
   return bound < 0.1 ? bound : 0.1;
 }
 
-/// Samples are worked on in compact blocks that stay in the first-level cache, in steps of one AVX-512 vector.
+/// Samples are worked on in compact blocks, in chunks of one AVX-512 vector.
 inline constexpr std::size_t kChunk = 16;
-inline constexpr std::size_t kBlockSide = 13;
-inline constexpr std::size_t kBlockCapacity = 176;  // kBlockSide^2, rounded up to whole chunks
+inline constexpr std::size_t kBlockCapacity = 256;
 inline constexpr std::size_t kBlockChunks = kBlockCapacity / kChunk;
 inline constexpr std::size_t kChunkSlots = (kBlockChunks + 3) / 4 * 4;  ///< in whole vectors
 

@@ -13,8 +13,9 @@ namespace terrane::lunar {
 
 class SampleBlocks {
  public:
-  /// The samples of a batch of rows x rowLength in compact blocks of at most kBlockCapacity. With a grid, whose
-  /// vertices the samples are by index, those on its border follow in blocks of their own, edge by edge.
+  /// The samples of a batch of rows x rowLength in compact blocks of at most kBlockCapacity, some of them more than
+  /// once. With a grid, whose vertices the samples are by index, those on its border follow, each once, in blocks of
+  /// their own, edge by edge.
   SampleBlocks(std::size_t rows, std::size_t rowLength, const std::optional<TileGrid>& grid);
 
   std::size_t count() const noexcept { return ends_.size(); }
@@ -30,7 +31,9 @@ class SampleBlocks {
   }
 
  private:
-  void listInside(const std::vector<bool>& isOnBorder);
+  /// sampleAt(row, column): a sample, or none.
+  template <class SampleAt>
+  void listInside(std::size_t rows, std::size_t columns, const SampleAt& sampleAt);
   void listBorder(const std::vector<std::vector<std::uint32_t>>& edges);
   void endBlock() {
     if (samples_.size() > (ends_.empty() ? 0 : ends_.back())) ends_.push_back(samples_.size());

@@ -11,13 +11,13 @@
 #include "tests/accuracy/experiment.h"
 #include "tests/accuracy/side_by_side.h"
 #include "tests/accuracy/tile_build/lunar_octaves.h"
+#include "tests/accuracy/tile_build/sample_block.h"
 #include "tests/accuracy/tile_build/tile_reference.h"
 
 namespace terrane::accuracy {
 namespace {
 
 using lunar::Block;
-using lunar::kBlockCapacity;
 
 constexpr double kRadiusMeters = 1'737'400.0;
 constexpr int kFinestExponent = -10;  // 2^-10 m, about 1 mm
@@ -34,12 +34,12 @@ std::vector<Block> makeBlocks(std::size_t count, std::uint64_t seed) {
   for (Block& block : blocks) {
     const double a = uniform(), b = uniform();
     const double radial = kRadiusMeters / std::sqrt(1 + a * a + b * b);
-    block.count = kBlockCapacity;
-    for (std::size_t i = 0; i < kBlockCapacity; ++i) {
-      const std::size_t k = std::min(i, lunar::kBlockSide * lunar::kBlockSide - 1);
+    block.count = kBlockSamples;
+    for (std::size_t i = 0; i < kBlockSamples; ++i) {
+      const std::size_t k = std::min(i, kBlockSide * kBlockSide - 1);
       block.x[i] = radial;
-      block.y[i] = radial * a + cell * static_cast<double>(k % lunar::kBlockSide);
-      block.z[i] = radial * b + cell * static_cast<double>(k / lunar::kBlockSide);
+      block.y[i] = radial * a + cell * static_cast<double>(k % kBlockSide);
+      block.z[i] = radial * b + cell * static_cast<double>(k / kBlockSide);
     }
   }
   return blocks;
@@ -54,7 +54,7 @@ struct Sample {
 std::vector<Sample> bitsOf(const std::vector<Block>& blocks) {
   std::vector<Sample> samples;
   for (const Block& b : blocks)
-    for (std::size_t i = 0; i < kBlockCapacity; ++i)
+    for (std::size_t i = 0; i < kBlockSamples; ++i)
       samples.push_back({std::bit_cast<std::uint64_t>(b.height[i]),
                          {std::bit_cast<std::uint32_t>(b.gradientX[i]), std::bit_cast<std::uint32_t>(b.gradientY[i]),
                           std::bit_cast<std::uint32_t>(b.gradientZ[i])}});
@@ -64,7 +64,7 @@ std::vector<Sample> bitsOf(const std::vector<Block>& blocks) {
 double worstErrorMeters(const std::vector<Block>& blocks, const std::vector<lunar::NoiseOctave>& octaves) {
   double worst = 0;
   for (const Block& b : blocks)
-    for (std::size_t i = 0; i < kBlockCapacity; ++i) {
+    for (std::size_t i = 0; i < kBlockSamples; ++i) {
       const long double exact = referenceHeightMeters(octaves, {b.x[i], b.y[i], b.z[i]});
       worst = std::max(worst, static_cast<double>(std::fabs(static_cast<long double>(b.height[i]) - exact)));
     }
@@ -86,10 +86,10 @@ void addOctaves(const Settings& settings, int count, const std::vector<SimdPath>
   std::vector<Work> ways;
   for (const SimdPath path : paths)
     ways.push_back([&program, &blocks, evaluate = kernelOf(path)](std::size_t samples) {
-      for (std::size_t k = 0; k < samples / kBlockCapacity; ++k) evaluate(program, blocks[k]);
+      for (std::size_t k = 0; k < samples / kBlockSamples; ++k) evaluate(program, blocks[k]);
       return blocks.front().height[0];
     });
-  seen.lastNs = nanosecondsPerItem(ways, kTimedBlocks * kBlockCapacity, settings.quick ? 15 : 301);
+  seen.lastNs = nanosecondsPerItem(ways, kTimedBlocks * kBlockSamples, settings.quick ? 15 : 301);
   const bool first = count == kOctaves.front();
   if (first) seen.firstNs = seen.lastNs;
   seen.amplitudesMeters = 0;
@@ -97,7 +97,7 @@ void addOctaves(const Settings& settings, int count, const std::vector<SimdPath>
 
   std::vector<Sample> reference;
   for (std::size_t p = 0; p < paths.size(); ++p) {
-    ways[p](blocks.size() * kBlockCapacity);
+    ways[p](blocks.size() * kBlockSamples);
     const std::vector<Sample> samples = bitsOf(blocks);
     if (p == 0) reference = samples;
     std::size_t differing = 0;

@@ -12,18 +12,18 @@
 #include "common/tiling/lattice.h"
 #include "common/tiling/quarter_pi_polynomials.h"
 #include "tests/accuracy/tile_build/lunar_octaves.h"
+#include "tests/accuracy/tile_build/sample_block.h"
 #include "tests/accuracy/tile_build/tile_loops.h"
 
 namespace terrane::accuracy {
 
 inline constexpr int kCells = 64;
 inline constexpr std::size_t kSide = kCells + 1, kVertices = kSide * kSide;
-/// A tile is cut into 5 x 5 blocks of 13 x 13 vertices, as the server does.
-inline constexpr std::size_t kBlocksPerLine = kSide / lunar::kBlockSide, kBlocks = kBlocksPerLine * kBlocksPerLine;
-inline constexpr std::size_t kLineSlots = kBlocksPerLine * lunar::kBlockCapacity,
-                             kLineVertices = kVertices / kBlocksPerLine;
-inline constexpr std::size_t kSlots = kBlocks * lunar::kBlockCapacity;
-static_assert(kBlocksPerLine * lunar::kBlockSide == kSide);
+/// A tile is cut into 5 x 5 blocks of 13 x 13 vertices.
+inline constexpr std::size_t kBlocksPerLine = kSide / kBlockSide, kBlocks = kBlocksPerLine * kBlocksPerLine;
+inline constexpr std::size_t kLineSlots = kBlocksPerLine * kBlockSamples, kLineVertices = kVertices / kBlocksPerLine;
+inline constexpr std::size_t kSlots = kBlocks * kBlockSamples;
+static_assert(kBlocksPerLine * kBlockSide == kSide);
 
 template <class T>
 struct Columns {
@@ -101,11 +101,10 @@ void directionsOf(const Place& place, const TileLoopsOf<Real>& loops, Columns<Re
 inline std::vector<std::size_t> vertexOfSlot() {
   std::vector<std::size_t> vertices;
   for (std::size_t block = 0; block < kBlocks; ++block) {
-    const std::size_t row = block / kBlocksPerLine * lunar::kBlockSide,
-                      column = block % kBlocksPerLine * lunar::kBlockSide;
-    for (std::size_t slot = 0; slot < lunar::kBlockCapacity; ++slot) {
-      const std::size_t k = std::min(slot, lunar::kBlockSide * lunar::kBlockSide - 1);
-      vertices.push_back((row + k / lunar::kBlockSide) * kSide + column + k % lunar::kBlockSide);
+    const std::size_t row = block / kBlocksPerLine * kBlockSide, column = block % kBlocksPerLine * kBlockSide;
+    for (std::size_t slot = 0; slot < kBlockSamples; ++slot) {
+      const std::size_t k = std::min(slot, kBlockSide * kBlockSide - 1);
+      vertices.push_back((row + k / kBlockSide) * kSide + column + k % kBlockSide);
     }
   }
   return vertices;

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "server/fields/lunar_program.h"
+#include "tests/accuracy/tile_build/sample_block.h"
 
 namespace terrane::accuracy {
 
@@ -44,7 +44,7 @@ struct OctaveSum {
   std::size_t broad;  ///< so many of the first are computed in double where the loop has doubles at all
 };
 
-/// Heights, and gradients without their sphere, at blocks of kBlockCapacity positions each.
+/// Heights, and gradients without their sphere, at blocks of kBlockSamples positions each.
 template <class Position>
 using OctaveLoop = void (*)(const OctaveSum& sum, Triples<const Position> positions, std::size_t blocks,
                             double* heights, Triples<float> gradient);

@@ -14,7 +14,6 @@ namespace terrane::lunar {
 namespace terrane::accuracy {
 namespace {
 
-using lunar::kBlockCapacity;
 using lunar::NoiseOctave;
 
 TERRANE_INLINE float squareRoot(float v) { return __builtin_sqrtf(v); }
@@ -133,8 +132,8 @@ AxisInCells<Position> axisInCells(const Position* p, const Position* bounds, con
 
 template <class Sum>
 struct Sums {
-  alignas(64) Sum height[kBlockCapacity];
-  alignas(64) float x[kBlockCapacity], y[kBlockCapacity], z[kBlockCapacity];
+  alignas(64) Sum height[kBlockSamples];
+  alignas(64) float x[kBlockSamples], y[kBlockSamples], z[kBlockSamples];
 };
 
 template <class Real, class Sum>
@@ -155,7 +154,7 @@ void addOctave(Triples<const Position> p, const Position (*bounds)[2], const Noi
     const lunar::Cell cell =
         lunar::cellDirections(indexOfCell(ax.low), indexOfCell(ay.low), indexOfCell(az.low), octave.seed);
     const Position rx = nearestCell(ax.low), ry = nearestCell(ay.low), rz = nearestCell(az.low);
-    for (std::size_t i = 0; i < kBlockCapacity; ++i) {
+    for (std::size_t i = 0; i < kBlockSamples; ++i) {
       const Real fx = static_cast<Real>((ax.at(i) - rx) + Position(0.5));
       const Real fy = static_cast<Real>((ay.at(i) - ry) + Position(0.5));
       const Real fz = static_cast<Real>((az.at(i) - rz) + Position(0.5));
@@ -163,17 +162,17 @@ void addOctave(Triples<const Position> p, const Position (*bounds)[2], const Noi
     }
     return;
   }
-  alignas(64) Real f[3][kBlockCapacity];
-  alignas(64) std::uint32_t index[3][kBlockCapacity];
+  alignas(64) Real f[3][kBlockSamples];
+  alignas(64) std::uint32_t index[3][kBlockSamples];
   const AxisInCells<Position> axes[3] = {ax, ay, az};
   for (int axis = 0; axis < 3; ++axis) {
     const AxisInCells<Position> along = axes[axis];
-    for (std::size_t i = 0; i < kBlockCapacity; ++i) {
+    for (std::size_t i = 0; i < kBlockSamples; ++i) {
       f[axis][i] = withinCell<Position, Real>(along.at(i));
       index[axis][i] = indexOfCell(along.at(i));
     }
   }
-  for (std::size_t i = 0; i < kBlockCapacity; ++i) {
+  for (std::size_t i = 0; i < kBlockSamples; ++i) {
     const lunar::Cell cell = lunar::cellDirections(index[0][i], index[1][i], index[2][i], octave.seed);
     add(lunar::noiseInCell<Real>(cell, f[0][i], f[1][i], f[2][i]), amplitude, slope, i, sums);
   }
@@ -183,7 +182,7 @@ template <class Position>
 void findBounds(const Position* p, Position* bounds) {
   Position low[8], high[8];
   for (int j = 0; j < 8; ++j) low[j] = high[j] = p[j];
-  for (std::size_t i = 8; i < kBlockCapacity; i += 8) {
+  for (std::size_t i = 8; i < kBlockSamples; i += 8) {
     for (int j = 0; j < 8; ++j) {
       const Position value = p[i + static_cast<std::size_t>(j)];
       low[j] = value < low[j] ? value : low[j];
@@ -200,7 +199,7 @@ void findBounds(const Position* p, Position* bounds) {
 
 template <class Sum>
 void clear(Sums<Sum>& sums) {
-  for (std::size_t i = 0; i < kBlockCapacity; ++i) {
+  for (std::size_t i = 0; i < kBlockSamples; ++i) {
     sums.height[i] = Sum(0);
     sums.x[i] = sums.y[i] = sums.z[i] = 0.0f;
   }
@@ -210,7 +209,7 @@ template <class Position, class Fine>
 void sumOctaves(const OctaveSum& sum, Triples<const Position> all, std::size_t blocks, double* heights,
                 Triples<float> gradient) {
   for (std::size_t block = 0; block < blocks; ++block) {
-    const std::size_t first = block * kBlockCapacity;
+    const std::size_t first = block * kBlockSamples;
     const Triples<const Position> p{all.x + first, all.y + first, all.z + first};
     Position bounds[3][2];
     findBounds(p.x, bounds[0]);
@@ -225,7 +224,7 @@ void sumOctaves(const OctaveSum& sum, Triples<const Position> all, std::size_t b
         addOctave<Fine>(p, bounds, sum.octaves[k], sums);
       }
     }
-    for (std::size_t i = 0; i < kBlockCapacity; ++i) {
+    for (std::size_t i = 0; i < kBlockSamples; ++i) {
       heights[first + i] = static_cast<double>(sums.height[i]);
       gradient.x[first + i] = sums.x[i];
       gradient.y[first + i] = sums.y[i];

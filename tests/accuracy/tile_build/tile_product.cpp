@@ -13,9 +13,9 @@ ProductNoise::ProductNoise(const Place& place, SimdPath path, const Columns<doub
       evaluate_(kernelOf(path)),
       blocks_(kBlocks) {
   for (std::size_t slot = 0; slot < kSlots; ++slot) {
-    lunar::Block& block = blocks_[slot / lunar::kBlockCapacity];
-    const std::size_t at = slot % lunar::kBlockCapacity;
-    block.count = lunar::kBlockCapacity;
+    lunar::Block& block = blocks_[slot / kBlockSamples];
+    const std::size_t at = slot % kBlockSamples;
+    block.count = kBlockSamples;
     block.x[at] = blockPositions.x[slot];
     block.y[at] = blockPositions.y[slot];
     block.z[at] = blockPositions.z[slot];
@@ -26,7 +26,7 @@ std::vector<double> ProductNoise::heightMeters() {
   std::vector<double> heights;
   for (lunar::Block& block : blocks_) {
     evaluate_(program_, block);
-    heights.insert(heights.end(), block.height, block.height + lunar::kBlockCapacity);
+    heights.insert(heights.end(), block.height, block.height + kBlockSamples);
   }
   return heights;
 }
@@ -36,7 +36,7 @@ double ProductNoise::lastHeightMeters(std::size_t blockLine) {
   for (std::size_t k = 0; k < kBlocksPerLine; ++k) {
     lunar::Block& block = blocks_[blockLine * kBlocksPerLine + k];
     evaluate_(program_, block);
-    last = block.height[lunar::kBlockCapacity - 1];
+    last = block.height[kBlockSamples - 1];
   }
   return last;
 }
