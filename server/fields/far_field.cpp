@@ -163,7 +163,8 @@ void FarField::judgeCraters(const Program& whole) {
   verdicts_.clear();
   for (std::size_t k = 0; k < whole.runCount; ++k) {
     const FeatureRun& run = whole.runs[k];
-    judged_.push_back({run.features, run.count, verdicts_.size()});
+    if (judged_.empty() || judged_.back().end() != run.features) judged_.push_back({run.features, 0, verdicts_.size()});
+    judged_.back().count += run.count;
     for (std::size_t i = 0; i < run.count; ++i) {
       const double error = errorOf(run.stage, run.features[i], whole);
       verdicts_.push_back(accepts(error));
@@ -172,29 +173,23 @@ void FarField::judgeCraters(const Program& whole) {
   }
 }
 
-const char* FarField::verdictsOn(const FeatureRun& run, std::size_t& from) const noexcept {
-  for (std::size_t k = from; k < judged_.size(); ++k) {
-    const Feature *first = judged_[k].features, *end = first + judged_[k].count;
-    if (!std::less<>()(run.features, first) && !std::less<>()(end, run.features + run.count)) {
-      from = k;
-      return verdicts_.data() + judged_[k].begin + (run.features - first);
-    }
-  }
-  return nullptr;
+bool FarField::isJudgedFar(const Feature& feature) const noexcept {
+  for (const Judged& judged : judged_)
+    if (!std::less<>()(&feature, judged.features) && std::less<>()(&feature, judged.end()))
+      return verdicts_[judged.begin + static_cast<std::size_t>(&feature - judged.features)] != 0;
+  return false;
 }
 
 void FarField::takeCraters(const Program& whole, bool far, Part& out) const {
-  std::size_t judged = 0;
   for (std::size_t k = 0; k < whole.runCount; ++k) {
     const FeatureRun& run = whole.runs[k];
-    const char* const isFar = verdictsOn(run, judged);
     std::size_t begin = 0;
     const auto takeUpTo = [&](std::size_t end) {
       if (end > begin) out.runs.push_back({run.features + begin, end - begin, run.stage, run.inDouble || far});
       begin = end + 1;
     };
     for (std::size_t i = 0; i < run.count; ++i)
-      if ((isFar != nullptr && isFar[i] != 0) != far) takeUpTo(i);
+      if (isJudgedFar(run.features[i]) != far) takeUpTo(i);
     takeUpTo(run.count);
   }
 }

@@ -71,9 +71,8 @@ class FarField {
   double errorOf(FeatureStage stage, const Feature& feature, const Program& atLevel) const noexcept;
   /// Decides for all features of a program.
   void judgeCraters(const Program& whole);
-  /// One flag a feature of a run: whether it is far. Null if none was judged: what only finer levels show is near.
-  /// from: where in judged_ to look; runs come in the same order.
-  const char* verdictsOn(const FeatureRun& run, std::size_t& from) const noexcept;
+  /// One that was not judged is near: it is what only finer levels show.
+  bool isJudgedFar(const Feature& feature) const noexcept;
   bool isChosen(const NoiseOctave& octave) const noexcept { return (farOctaves_ & bitOf(octave)) != 0; }
   std::size_t chooseIn(const NoiseGroup& group, bool keepLast);
   double errorIn(const NoiseGroup& group, const NoiseOctave* last) const noexcept;
@@ -92,10 +91,11 @@ class FarField {
   double octaveError_ = 0, featureError_ = 0;
   double tolerance_ = 0;
   Part far_, near_;
-  /// Features that were judged, run by run.
+  /// Features that lie together in memory and were judged; the levels beside cut them into other runs.
   struct Judged {
     const Feature* features;
     std::size_t count, begin;  ///< in verdicts_
+    const Feature* end() const noexcept { return features + count; }
   };
   std::vector<Judged> judged_;
   std::vector<char> verdicts_;

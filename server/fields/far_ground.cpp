@@ -72,11 +72,11 @@ NearSpan oldSpan(const Program& near, const Ball& patch) noexcept {
   return span;
 }
 
-/// Of young craters and rocks. The finer level shows some more of less than its radius: of two classes of size, craters
-/// of two kinds and rocks, at most four of each at a point (feature_layers.h), no higher or deeper than half their
-/// radius.
+/// Of young craters and rocks. The finer level shows some more of less than its radius: landmarks, and of two classes
+/// of size craters of two kinds and rocks, at most four of each at a point (feature_layers.h). None is higher or deeper
+/// than its radius, and all but one of a layer are there with their ejecta alone.
 NearSpan youngSpan(const Program& near, const Ball& patch) noexcept {
-  const double finer = 2 * 3 * 4 * 0.5 * near.minWavelength;
+  const double finer = 2 * 3 * 4 * near.minWavelength;
   NearSpan span{-finer, finer};
   for (std::size_t k = 0; k < near.runCount; ++k) {
     const FeatureRun& run = near.runs[k];

@@ -41,7 +41,7 @@ class FeatureGathering {
   /// Valid until the next call.
   GatheredFeatures near(const std::shared_ptr<const FeatureTables>& tables, const PointSet& points,
                         const FeatureWants& wants);
-  /// Changes whenever what is kept of features does.
+  /// Changes whenever what is kept of craters and rocks does.
   std::uint64_t version() const noexcept { return version_; }
 
  private:

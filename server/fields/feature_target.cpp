@@ -96,12 +96,19 @@ void forEachOnFace(int face, const PointSet& points, const Visit& visit) noexcep
 
 }  // namespace
 
+/// The least distance from the axis across, in radii, of what lies between tangents along and across:
+/// sqrt((1 + X^2) / (1 + X^2 + Y^2)).
+double FaceView::leastCircle(const AngleSpan& along, const AngleSpan& across) noexcept {
+  const double nearest = std::max({along.low, -along.high, 0.0}), farthest = std::max(-across.low, across.high);
+  const double x = 1 + nearest * nearest;
+  return std::sqrt(x / (x + farthest * farthest));
+}
+
 FaceView::FaceView(int face, const PointSet& points, double slack) noexcept : FaceView(face, points.ball) {
   if (!(u_.circleRadius > 0)) return;  // most faces: the ball's middle is too far round
-  Least outwards, room, lowU, lowV, highU, highV, squareU, squareV;
+  Least outwards, room, lowU, lowV, highU, highV;
   forEachOnFace(face, points, [&](const Lanes& outward, const Lanes& u, const Lanes& v) {
-    const Lanes tangentU = u / outward, tangentV = v / outward, square = outward * outward,
-                most = kMostTangent * outward;
+    const Lanes tangentU = u / outward, tangentV = v / outward, most = kMostTangent * outward;
     outwards.add(outward);
     room.add(most - u);
     room.add(most + u);
@@ -111,17 +118,18 @@ FaceView::FaceView(int face, const PointSet& points, double slack) noexcept : Fa
     highU.add(-tangentU);
     lowV.add(tangentV);
     highV.add(-tangentV);
-    squareU.add(square + u * u);
-    squareV.add(square + v * v);
   });
   if (!(outwards.value() > 0 && room.value() >= 0)) return;
-  const auto take = [&](const Least& low, const Least& high, const Least& square, AxisView& axis) {
+  const auto take = [&](const Least& low, const Least& high, AxisView& axis) {
     axis.tangents = {low.value(), -high.value()};
     axis.close(slack);
-    axis.circleRadius = std::sqrt(square.value()) * points.scale * (1 - 1e-9);
   };
-  take(lowU, highU, squareU, u_);
-  take(lowV, highV, squareV, v_);
+  take(lowU, highU, u_);
+  take(lowV, highV, v_);
+  const double radius = std::sqrt(points.x[0] * points.x[0] + points.y[0] * points.y[0] + points.z[0] * points.z[0]) *
+                        points.scale * (1 - 1e-9);
+  u_.circleRadius = radius * leastCircle(u_.tangents, v_.tangents);
+  v_.circleRadius = radius * leastCircle(v_.tangents, u_.tangents);
   aroundAngles_ = 0;
 }
 

@@ -64,6 +64,8 @@ class FaceView {
     bool isBeyond(const AngleSpan& at, double reach) const noexcept;
   };
 
+  static double leastCircle(const AngleSpan& along, const AngleSpan& across) noexcept;
+
   int face_;
   double outward_, ballRadius_;  ///< metres; of the ball
   double aroundAngles_ = 0;      ///< metres: how far the target may be from points with the angles

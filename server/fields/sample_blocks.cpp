@@ -51,8 +51,10 @@ SampleBlocks::SampleBlocks(std::size_t rows, std::size_t rowLength, const std::o
 /// crater touches few of them. Where the last of a strip's chunks is not full, its last sample is listed again.
 template <class SampleAt>
 void SampleBlocks::listInside(std::size_t rows, std::size_t columns, const SampleAt& sampleAt) {
+  if (rows == 0 || columns == 0) return;
   const std::size_t stripRows = std::min(kChunkSide, rows), blockRows = std::min(4 * kChunkSide, rows);
-  const std::size_t blockColumns = blockRows == 0 ? 1 : kBlockCapacity / blockRows;
+  const std::size_t strips = (blockRows + stripRows - 1) / stripRows;
+  const std::size_t blockColumns = kBlockChunks / strips * kChunk / stripRows;
   for (std::size_t top = 0; top < rows; top += blockRows) {
     for (std::size_t left = 0; left < columns; left += blockColumns) {
       const std::size_t bottom = std::min(top + blockRows, rows), right = std::min(left + blockColumns, columns);

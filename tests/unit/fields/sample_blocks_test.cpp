@@ -27,6 +27,13 @@ std::vector<int> countSamples(const SampleBlocks& blocks, std::size_t count, std
 }
 
 TEST(SampleBlocks, HoldEverySampleAndFewTwice) {
+  for (std::size_t rows = 1; rows <= 40; ++rows)
+    for (std::size_t rowLength = 1; rowLength <= 100; rowLength += 3) {
+      const SampleBlocks blocks(rows, rowLength, {});
+      const std::vector<int> counts = countSamples(blocks, rows * rowLength, 0, blocks.count());
+      ASSERT_TRUE(std::all_of(counts.begin(), counts.end(), [](int n) { return n >= 1; }))
+          << rows << " x " << rowLength;
+    }
   for (const Shape& shape : {Shape{1, 1, {}}, Shape{1, 129, {}}, Shape{2, 2, {}}, Shape{65, 65, {}},
                              Shape{65, 65, TileGrid{Scheme::Cube, 64}}, Shape{33, 65, TileGrid{Scheme::Ico, 64}},
                              Shape{3, 3, TileGrid{Scheme::Cube, 2}}, Shape{2, 3, TileGrid{Scheme::Ico, 2}},

@@ -47,12 +47,13 @@ class ExpandedTiles : public OfScheme {
   }
 
   /// An edge as the level beside the tile's has it: step -1 or 1.
-  void evaluateEdge(const FacePath& path, int cells, int step, double toleranceMeters, SurfaceSamples& out) {
+  void evaluateEdge(const FacePath& path, int cells, int step, double toleranceMeters, SurfaceSamples& out,
+                    int skirtEdge = 1) {
     const int edgeCells = step < 0 ? cells / 2 : 2 * cells;
     GridDirections edge;
-    appendEdgeDirections(path, 1, edgeCells, edge);
+    appendEdgeDirections(path, skirtEdge, edgeCells, edge);
     SampleBatch batch{edge.x.data(), edge.y.data(), edge.z.data(), 1, edge.x.size()};
-    batch.grid = GridPlace{path, edgeCells, 1};
+    batch.grid = GridPlace{path, edgeCells, skirtEdge};
     batch.toleranceMeters = toleranceMeters;
     field_->evaluate(batch, minWavelength(path.level() + step, cells), out);
   }
@@ -180,6 +181,29 @@ TEST_P(ExpandedTiles, LendTheirExpansionToTheirOwnEdgesOnly) {
     lent += differs ? 1 : 0;
   }
   EXPECT_GT(lent, 100);
+}
+
+/// Between two landmarks of different sizes, which the levels compute in different precisions.
+TEST_P(ExpandedTiles, LendTheirEdgesNoCraterTwice) {
+  const FacePath middle = FacePath::parse(GetParam() == Scheme::Cube ? "cube/2/000331122" : "ico/4/32312300").value();
+  SurfaceSamples grid, edge, fullEdge;
+  for (int digits = 0; digits < 16; ++digits) {
+    const FacePath path = digits == 0 ? middle : middle.parent().parent().child(digits / 4).child(digits % 4);
+    const double tolerance = accuracy(path.level()).toleranceMeters;
+    for (const int step : {-1, 1}) {
+      evaluate(*field_, path, tolerance, grid);
+      edge.scratch = grid.scratch;
+      for (int skirtEdge = 0; skirtEdge < 3; ++skirtEdge) {
+        evaluateEdge(path, kCells, step, tolerance, edge, skirtEdge);
+        fullEdge.scratch = nullptr;
+        evaluateEdge(path, kCells, step, 0, fullEdge, skirtEdge);
+        for (std::size_t i = 0; i < edge.heightMeters.size(); ++i)
+          ASSERT_LE(std::abs(edge.heightMeters[i] - fullEdge.heightMeters[i]),
+                    tolerance + field_->roundingMeters(minWavelength(path.level() + step, kCells)))
+              << path.text() << " edge " << skirtEdge << " step " << step;
+      }
+    }
+  }
 }
 
 TEST_P(ExpandedTiles, AreForgottenWhereOtherBatchesCameBetweenThemAndTheirEdges) {
