@@ -41,23 +41,33 @@ struct FarExpansion {
   float tint, tintPerMeter;
 };
 
-/// Calls visit(polynomial, array) for each polynomial of an expansion of mixed ground and the array of a block that
+/// Calls visit(polynomial, array) for each polynomial that an expansion's ground asks for and the array of a block that
 /// it is of; either may be const.
 template <class Expansion, class Samples, class Visit>
 TERRANE_INLINE void forEachFarHeight(Expansion& far, Samples& b, const Visit& visit) {
   visit(far.relief, b.relief);
-  visit(far.lava, b.lava);
-  visit(far.dry, b.dry);
   visit(far.young, b.young);
-  visit(far.rough, b.rough);
   visit(far.last, b.last);
   visit(far.sum, b.sum);
+  if (far.ground != FarGround::Mixed) return;
+  visit(far.lava, b.lava);
+  visit(far.dry, b.dry);
+  visit(far.rough, b.rough);
 }
 template <class Expansion, class Samples, class Visit>
 TERRANE_INLINE void forEachFarSlope(Expansion& far, Samples& b, const Visit& visit) {
   visit(far.reliefX, b.reliefX);
   visit(far.reliefY, b.reliefY);
   visit(far.reliefZ, b.reliefZ);
+  visit(far.lastX, b.lastX);
+  visit(far.lastY, b.lastY);
+  visit(far.lastZ, b.lastZ);
+  visit(far.sumX, b.sumX);
+  visit(far.sumY, b.sumY);
+  visit(far.sumZ, b.sumZ);
+  visit(far.bright, b.bright);
+  visit(far.mottle, b.mottle);
+  if (far.ground != FarGround::Mixed) return;
   visit(far.lavaX, b.lavaX);
   visit(far.lavaY, b.lavaY);
   visit(far.lavaZ, b.lavaZ);
@@ -70,37 +80,6 @@ TERRANE_INLINE void forEachFarSlope(Expansion& far, Samples& b, const Visit& vis
   visit(far.roughX, b.roughX);
   visit(far.roughY, b.roughY);
   visit(far.roughZ, b.roughZ);
-  visit(far.lastX, b.lastX);
-  visit(far.lastY, b.lastY);
-  visit(far.lastZ, b.lastZ);
-  visit(far.sumX, b.sumX);
-  visit(far.sumY, b.sumY);
-  visit(far.sumZ, b.sumZ);
-  visit(far.bright, b.bright);
-  visit(far.mottle, b.mottle);
-}
-
-/// The same of ground that is not mixed.
-template <class Expansion, class Samples, class Visit>
-TERRANE_INLINE void forEachPlainHeight(Expansion& far, Samples& b, const Visit& visit) {
-  visit(far.relief, b.relief);
-  visit(far.young, b.young);
-  visit(far.last, b.last);
-  visit(far.sum, b.sum);
-}
-template <class Expansion, class Samples, class Visit>
-TERRANE_INLINE void forEachPlainSlope(Expansion& far, Samples& b, const Visit& visit) {
-  visit(far.reliefX, b.reliefX);
-  visit(far.reliefY, b.reliefY);
-  visit(far.reliefZ, b.reliefZ);
-  visit(far.lastX, b.lastX);
-  visit(far.lastY, b.lastY);
-  visit(far.lastZ, b.lastZ);
-  visit(far.sumX, b.sumX);
-  visit(far.sumY, b.sumY);
-  visit(far.sumZ, b.sumZ);
-  visit(far.bright, b.bright);
-  visit(far.mottle, b.mottle);
 }
 
 }  // namespace terrane::lunar

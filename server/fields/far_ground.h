@@ -1,8 +1,8 @@
 #pragma once
 // Patches of ground that are not mixed: over all of one, either land or lava is on top by more than the blend of the
 // two, the regolith is calmed alike, and no height is near the clamp. There the field is a sum, so that its far part
-// needs half as many polynomials, and what is under lava need not be evaluated. Most tiles of fine levels are of such
-// ground. Decided by enclosures of the polynomials and by bounds of what is near, so never wrongly. Thread-safe.
+// needs half as many polynomials, and what is under lava need not be evaluated. Decided by enclosures of the
+// polynomials and by bounds of what is near, so never wrongly. Thread-safe.
 
 #include "server/fields/far_expansion.h"
 #include "server/fields/feature_target.h"

@@ -10,7 +10,7 @@
 namespace terrane::lunar {
 namespace {
 
-/// 2^exponent, exactly.
+/// Between the entries of a table, at a position counted in entries.
 double interpolate(std::span<const double> table, double position) noexcept {
   const double last = static_cast<double>(table.size() - 1);
   const double clamped = std::clamp(position, 0.0, last);

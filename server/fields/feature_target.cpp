@@ -44,28 +44,13 @@ constexpr double kRadians = 0.7853981633974483;  ///< in a face angle
 /// Further round from the face's middle, angles are not computed.
 constexpr double kMostTangent = 2;
 
-}  // namespace
-
-void FaceView::AxisView::close(double slack) noexcept {
-  const double more = slack * (tangents.high - tangents.low);
-  tangents = {tangents.low - more, tangents.high + more};
-  angles = {atanQuarterPi(tangents.low), atanQuarterPi(tangents.high)};
+/// The least distance from the axis across, in radii, of what lies between tangents along and across:
+/// sqrt((1 + X^2) / (1 + X^2 + Y^2)).
+double leastCircle(const AngleSpan& along, const AngleSpan& across) noexcept {
+  const double nearest = std::max({along.low, -along.high, 0.0}), farthest = std::max(-across.low, across.high);
+  const double x = 1 + nearest * nearest;
+  return std::sqrt(x / (x + farthest * farthest));
 }
-
-FaceView::FaceView(int face, const Ball& ball) noexcept
-    : face_(face), outward_(dot(cubeFaceAxes(face).normal, ball.center)), ballRadius_(ball.radius) {
-  u_.middle = dot(cubeFaceAxes(face).u, ball.center);
-  v_.middle = dot(cubeFaceAxes(face).v, ball.center);
-  if (!(outward_ > 0 && std::max(std::fabs(u_.middle), std::fabs(v_.middle)) <= kMostTangent * outward_)) return;
-  aroundAngles_ = ball.radius;
-  for (AxisView* const axis : {&u_, &v_}) {
-    axis->tangents.low = axis->tangents.high = axis->middle / outward_;
-    axis->close(0);
-    axis->circleRadius = std::sqrt(outward_ * outward_ + axis->middle * axis->middle);
-  }
-}
-
-namespace {
 
 /// Points side by side: compilers do not make vectors of the comparisons of doubles.
 constexpr std::size_t kLanes = 2;
@@ -96,12 +81,23 @@ void forEachOnFace(int face, const PointSet& points, const Visit& visit) noexcep
 
 }  // namespace
 
-/// The least distance from the axis across, in radii, of what lies between tangents along and across:
-/// sqrt((1 + X^2) / (1 + X^2 + Y^2)).
-double FaceView::leastCircle(const AngleSpan& along, const AngleSpan& across) noexcept {
-  const double nearest = std::max({along.low, -along.high, 0.0}), farthest = std::max(-across.low, across.high);
-  const double x = 1 + nearest * nearest;
-  return std::sqrt(x / (x + farthest * farthest));
+void FaceView::AxisView::close(double slack) noexcept {
+  const double more = slack * (tangents.high - tangents.low);
+  tangents = {tangents.low - more, tangents.high + more};
+  angles = {atanQuarterPi(tangents.low), atanQuarterPi(tangents.high)};
+}
+
+FaceView::FaceView(int face, const Ball& ball) noexcept
+    : face_(face), outward_(dot(cubeFaceAxes(face).normal, ball.center)), ballRadius_(ball.radius) {
+  u_.middle = dot(cubeFaceAxes(face).u, ball.center);
+  v_.middle = dot(cubeFaceAxes(face).v, ball.center);
+  if (!(outward_ > 0 && std::max(std::fabs(u_.middle), std::fabs(v_.middle)) <= kMostTangent * outward_)) return;
+  aroundAngles_ = ball.radius;
+  for (AxisView* const axis : {&u_, &v_}) {
+    axis->tangents.low = axis->tangents.high = axis->middle / outward_;
+    axis->close(0);
+    axis->circleRadius = std::sqrt(outward_ * outward_ + axis->middle * axis->middle);
+  }
 }
 
 FaceView::FaceView(int face, const PointSet& points, double slack) noexcept : FaceView(face, points.ball) {

@@ -1,6 +1,6 @@
 #pragma once
-// What features are looked for about: a ball, or only a row of points, as along a tile's border, where most of what
-// lies in the ball around it is of no use. And the cells of a face that may hold them. Body frame, metres. Thread-safe.
+// What features are looked for about: a ball, what a tile's border encloses, or only a row of points along it; and the
+// cells of a face that may hold them. Body frame, metres. Thread-safe.
 
 #include <array>
 #include <cstddef>
@@ -64,8 +64,6 @@ class FaceView {
     bool isBeyond(const AngleSpan& at, double reach) const noexcept;
   };
 
-  static double leastCircle(const AngleSpan& along, const AngleSpan& across) noexcept;
-
   int face_;
   double outward_, ballRadius_;  ///< metres; of the ball
   double aroundAngles_ = 0;      ///< metres: how far the target may be from points with the angles
@@ -90,7 +88,7 @@ class PatchTarget {
   std::array<FaceView, 6> views_;
 };
 
-/// Points that lie near the line from the first to the last. Holds on to them.
+/// Points that lie near the line from the first to the last.
 class RowTarget {
  public:
   /// Precondition: one point or more.

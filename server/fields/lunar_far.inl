@@ -42,7 +42,7 @@ struct FarCoordinates {
   alignas(64) float singleA[kBlockCapacity], singleB[kBlockCapacity];
 };
 
-/// What of plain ground is near alone.
+/// Of ground that is not mixed, what is near alone.
 template <Wanted kWanted>
 void clearNear(Block& b) {
   for (std::size_t i = 0; i < b.count; ++i) {
@@ -70,14 +70,9 @@ void startFromFar(const FarExpansion& far, Block& b) {
       expand(polynomial, at.singleA, at.singleB, b.count, out);
     }
   };
-  if (far.ground != FarGround::Mixed) {
-    clearNear<kWanted>(b);
-    forEachPlainHeight(far, b, visit);
-    if constexpr (kWanted == Wanted::All) forEachPlainSlope(far, b, visit);
-  } else {
-    forEachFarHeight(far, b, visit);
-    if constexpr (kWanted == Wanted::All) forEachFarSlope(far, b, visit);
-  }
+  if (far.ground != FarGround::Mixed) clearNear<kWanted>(b);
+  forEachFarHeight(far, b, visit);
+  if constexpr (kWanted == Wanted::All) forEachFarSlope(far, b, visit);
 }
 
 }  // namespace
